@@ -1,0 +1,397 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers shared with the chip: frames, commands, codes, part image, settings.
+
+Generated from protocol.toml by generate_protocol.py: do not edit.
+"""
+
+from enum import IntEnum, IntFlag
+from struct import Struct
+from typing import NamedTuple
+
+PROTOCOL_VERSION = 1
+FIRMWARE_VERSION = "0.1.0"
+USB_VENDOR_ID = 0x1209
+USB_PRODUCT_ID = 0x0001
+FRAME_PAYLOAD_MAX = 56
+FRAME_TIMEOUT_MS = 250
+FRAME_TRIES = 5
+FRAME_RESPONSE_BIT = 0x80
+CRC16_POLYNOMIAL = 0x1021
+CRC16_INITIAL = 0xFFFF
+CRC16_CHECK = 0x29B1
+#: parts the chip can store
+PART_SLOTS = 8
+#: no slot; in RUN: the selected part
+SLOT_NONE = 255
+#: bytes of a part image
+PART_IMAGE_MAX = 960
+#: bytes of one UPLOAD_DATA or PART_READ piece
+UPLOAD_PIECE_MAX = 32
+#: operations of one part
+OPERATIONS_MAX = 48
+#: characters of a part name
+NAME_LENGTH = 16
+#: characters of the serial number
+SERIAL_LENGTH = 8
+#: steps, largest length or radius in a part image
+POSITION_MAX = 200000
+#: 1/256 step/s, slowest feed: 4 step/s
+FEED_MIN = 1024
+#: feed units of one step/s
+FEED_UNIT = 256
+#: progress of a finished run
+PERMILLE_DONE = 1000
+
+
+class Command(IntEnum):
+    """Code byte of a request."""
+
+    HELLO = 0x01
+    STATUS = 0x02
+    HOME = 0x03
+    RUN = 0x04
+    HOLD = 0x05
+    RESUME = 0x06
+    STOP = 0x07
+    RESET = 0x08
+    ZERO = 0x09
+    UPLOAD_BEGIN = 0x10
+    UPLOAD_DATA = 0x11
+    UPLOAD_COMMIT = 0x12
+    PART_INFO = 0x13
+    PART_READ = 0x14
+    PART_SELECT = 0x15
+    PART_DELETE = 0x16
+    SETTING_GET = 0x20
+    SETTING_SET = 0x21
+
+
+class Axis(IntEnum):
+    """The two slides."""
+
+    X = 0
+    Z = 1
+
+
+class State(IntEnum):
+    """What the machine is doing."""
+
+    IDLE = 0
+    HOMING = 1
+    RUNNING = 2
+    HOLD = 3
+    ALARM = 4
+
+
+class StatusFlag(IntFlag):
+    """Bits of the flags in STATUS."""
+
+    HOMED = 0x01
+    SWITCH_X = 0x02
+    SWITCH_Z = 0x04
+    ESTOP = 0x08
+    BUTTON_RUN = 0x10
+    BUTTON_HOLD = 0x20
+    BUTTON_STOP = 0x40
+    MOTION = 0x80
+
+
+class Alarm(IntEnum):
+    """Why the machine stopped."""
+
+    NONE = 0
+    HOME_NOT_FOUND = 1
+    HOME_NOT_RELEASED = 2
+    LIMIT = 3
+    ESTOP = 4
+    STREAM_DRY = 5
+    WRONG_SWITCH = 6
+    SETTINGS_LOST = 7
+    STOPPED_HOMING = 8
+    DEAD_STEPS_SPREAD = 9
+    INTERNAL = 10
+
+
+class ResetCause(IntEnum):
+    """Why the chip last started."""
+
+    POWER_ON = 1
+    BROWN_OUT = 2
+    WATCHDOG = 3
+    MCLR = 4
+    STACK = 5
+    SOFTWARE = 6
+
+
+class ErrorCode(IntEnum):
+    """First payload byte of every response."""
+
+    OK = 0
+    UNKNOWN_COMMAND = 1
+    BAD_LENGTH = 2
+    BUSY = 3
+    NOT_HOMED = 4
+    ALARM = 5
+    NO_PART = 6
+    INVALID_PART = 7
+    OUT_OF_RANGE = 8
+    NOT_RUNNING = 9
+    BAD_OFFSET = 10
+    NO_UPLOAD = 11
+    CRC_MISMATCH = 12
+    STORE_FULL = 13
+    FLASH_FAILED = 14
+    ESTOP = 15
+
+
+class Refusal(IntEnum):
+    """Why a part is refused."""
+
+    FORMAT = 1
+    LENGTH = 2
+    NAME = 3
+    STEP_SIZE = 4
+    STOCK = 5
+    DEPTH_OF_CUT = 6
+    FEED = 7
+    RETRACT = 8
+    OPERATION_COUNT = 9
+    OPERATION_TYPE = 10
+    OPERATION_SIZE = 11
+    OUTSIDE_STOCK = 12
+    OUTSIDE_TRAVEL = 13
+    EMPTY_CUT = 14
+    BLOCKED = 15
+    ALLOWANCE = 16
+
+
+class OperationType(IntEnum):
+    """First byte of an operation record."""
+
+    FACE = 1
+    CYLINDER = 2
+
+
+class SettingId(IntEnum):
+    """Settings by their number."""
+
+    STEP_X_NM = 0
+    STEP_Z_NM = 1
+    TRAVEL_X = 2
+    TRAVEL_Z = 3
+    ZERO_X = 4
+    ZERO_Z = 5
+    HOME_RATE = 6
+    LATCH_RATE = 7
+    RAPID_RATE_X = 8
+    RAPID_RATE_Z = 9
+    SWITCH_TRAVEL_X = 10
+    SWITCH_TRAVEL_Z = 11
+    COIL_MODE = 12
+    ESTOP_FITTED = 13
+    INVERT_X = 14
+    INVERT_Z = 15
+    DEAD_MAX = 16
+    DEAD_X = 17
+    DEAD_Z = 18
+    HOMING_REPEATS = 19
+    SPREAD_MAX = 20
+
+
+#: Request payloads; UPLOAD_DATA is followed by its bytes.
+REQUESTS = {
+    Command.HELLO: Struct("<"),
+    Command.STATUS: Struct("<"),
+    Command.HOME: Struct("<"),
+    Command.RUN: Struct("<B"),
+    Command.HOLD: Struct("<"),
+    Command.RESUME: Struct("<"),
+    Command.STOP: Struct("<"),
+    Command.RESET: Struct("<"),
+    Command.ZERO: Struct("<Bi"),
+    Command.UPLOAD_BEGIN: Struct("<HH"),
+    Command.UPLOAD_DATA: Struct("<H"),
+    Command.UPLOAD_COMMIT: Struct("<"),
+    Command.PART_INFO: Struct("<B"),
+    Command.PART_READ: Struct("<BH"),
+    Command.PART_SELECT: Struct("<B"),
+    Command.PART_DELETE: Struct("<B"),
+    Command.SETTING_GET: Struct("<B"),
+    Command.SETTING_SET: Struct("<Bi"),
+}
+#: Response data after the error byte; PART_READ answers bytes alone.
+RESPONSES = {
+    Command.HELLO: Struct("<BBBBBHIIIIii8sH"),
+    Command.STATUS: Struct("<BBBBiiHHBBBBBHBHIB"),
+    Command.HOME: Struct("<"),
+    Command.RUN: Struct("<"),
+    Command.HOLD: Struct("<"),
+    Command.RESUME: Struct("<"),
+    Command.STOP: Struct("<"),
+    Command.RESET: Struct("<"),
+    Command.ZERO: Struct("<"),
+    Command.UPLOAD_BEGIN: Struct("<"),
+    Command.UPLOAD_DATA: Struct("<"),
+    Command.UPLOAD_COMMIT: Struct("<BH"),
+    Command.PART_INFO: Struct("<BBHHHB16s"),
+    Command.PART_READ: Struct("<"),
+    Command.PART_SELECT: Struct("<"),
+    Command.PART_DELETE: Struct("<"),
+    Command.SETTING_GET: Struct("<iii"),
+    Command.SETTING_SET: Struct("<"),
+}
+#: Header of a part image.
+IMAGE_HEADER = Struct("<BBBB16sIIIIiHHIIHH")
+IMAGE_FORMAT = 1
+#: Operation records: type, size, flags, reserved, then the fields of the type.
+OPERATION_RECORDS = {
+    OperationType.FACE: Struct("<BBBBii"),
+    OperationType.CYLINDER: Struct("<BBBBiii"),
+}
+
+
+class HelloData(NamedTuple):
+    """Who are you? Starts the sequence anew; always executed."""
+
+    protocol: int
+    firmware_major: int
+    firmware_minor: int
+    firmware_patch: int
+    slots: int
+    image_max: int
+    step_x_nm: int
+    step_z_nm: int
+    travel_x: int
+    travel_z: int
+    zero_x: int
+    zero_z: int
+    serial: bytes
+    max_rate: int
+
+
+class StatusData(NamedTuple):
+    """Where is the tool, what is the machine doing?"""
+
+    state: int
+    alarm: int
+    alarm_detail: int
+    flags: int
+    x: int
+    z: int
+    dead_x: int
+    dead_z: int
+    slot: int
+    operation: int
+    operations: int
+    pass_number: int
+    passes: int
+    permille: int
+    reset_cause: int
+    bad_frames: int
+    uptime_ms: int
+    stream_low: int
+
+
+class UploadCommitData(NamedTuple):
+    """Check the whole image and make it a part."""
+
+    slot: int
+    crc: int
+
+
+class PartInfoData(NamedTuple):
+    """What is in a slot?"""
+
+    present: int
+    selected: int
+    generation: int
+    length: int
+    crc: int
+    operations: int
+    name: bytes
+
+
+class SettingGetData(NamedTuple):
+    """Read a setting and its range."""
+
+    value: int
+    minimum: int
+    maximum: int
+
+
+class ImageHeader(NamedTuple):
+    """Header of a part image."""
+
+    format: int
+    operation_count: int
+    flags: int
+    reserved: int
+    name: bytes
+    step_x_nm: int
+    step_z_nm: int
+    stock_radius: int
+    stock_length: int
+    stock_front: int
+    depth_of_cut: int
+    finish_allowance: int
+    feed: int
+    finish_feed: int
+    retract: int
+    reserved_end: int
+
+
+class FaceRecord(NamedTuple):
+    """Cut everything in front of z, from outside to x_inner."""
+
+    z: int
+    x_inner: int
+
+
+class CylinderRecord(NamedTuple):
+    """Cut everything between z_start and z_end that is larger than x."""
+
+    z_start: int
+    z_end: int
+    x: int
+
+
+class Setting(NamedTuple):
+    """One setting with its default, range and unit."""
+
+    id: SettingId
+    default: int
+    minimum: int
+    maximum: int
+    unit: str
+    meaning: str
+
+
+SETTINGS = (
+    Setting(SettingId.STEP_X_NM, 7112, 100, 100000, "nm", "one step of X"),
+    Setting(SettingId.STEP_Z_NM, 7112, 100, 100000, "nm", "one step of Z"),
+    Setting(SettingId.TRAVEL_X, 3575, 100, 200000, "steps", "travel of X from its limit switch"),
+    Setting(SettingId.TRAVEL_Z, 16072, 100, 200000, "steps", "travel of Z from its limit switch"),
+    Setting(SettingId.ZERO_X, -3575, -200000, 0, "steps", "machine X of the spindle axis"),
+    Setting(SettingId.ZERO_Z, -8000, -200000, 0, "steps", "machine Z of the part's front face"),
+    Setting(SettingId.HOME_RATE, 800, 20, 4000, "step/s", "speed towards the limit switches"),
+    Setting(SettingId.LATCH_RATE, 200, 20, 4000, "step/s", "speed of the second, slow approach"),
+    Setting(SettingId.RAPID_RATE_X, 1000, 20, 4000, "step/s", "rapid speed of X"),
+    Setting(SettingId.RAPID_RATE_Z, 1000, 20, 4000, "step/s", "rapid speed of Z"),
+    Setting(
+        SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide travel between switch X closing and opening"
+    ),
+    Setting(
+        SettingId.SWITCH_TRAVEL_Z, 0, 0, 200, "steps", "slide travel between switch Z closing and opening"
+    ),
+    Setting(SettingId.COIL_MODE, 0, 0, 1, "", "0 two phases on, 1 one phase on (wave)"),
+    Setting(SettingId.ESTOP_FITTED, 1, 0, 1, "", "1 when the emergency-stop sense is wired"),
+    Setting(SettingId.INVERT_X, 0, 0, 1, "", "1 turns motor X the other way"),
+    Setting(SettingId.INVERT_Z, 0, 0, 1, "", "1 turns motor Z the other way"),
+    Setting(SettingId.DEAD_MAX, 300, 0, 1000, "steps", "most dead steps that homing accepts"),
+    Setting(SettingId.DEAD_X, 0, 0, 1000, "steps", "dead steps of X, last measured"),
+    Setting(SettingId.DEAD_Z, 0, 0, 1000, "steps", "dead steps of Z, last measured"),
+    Setting(SettingId.HOMING_REPEATS, 3, 1, 9, "", "measurements per axis; the median counts"),
+    Setting(
+        SettingId.SPREAD_MAX, 2, 0, 50, "steps", "largest difference between these measurements"
+    ),
+)

@@ -2,13 +2,14 @@
 """Write the tables of docs/protocol.md, between their markers."""
 
 import re
+from collections.abc import Sequence
 
 from protocol_model import RECORD_HEAD, Field, Layout, Model
 
 MARKER = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
-def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+def table(head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
     """A Markdown table."""
     lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
     lines += ["| " + " | ".join(row) + " |" for row in rows]
@@ -20,11 +21,11 @@ def field_rows(fields: tuple[Field, ...]) -> list[tuple[str, ...]]:
     return [(str(f.offset), f.type, f"`{f.name}`", f.meaning) for f in fields]
 
 
-def layout_text(title: str, part: Layout, before: list[tuple[str, ...]]) -> str:
+def layout_text(title: str, part: Layout, before: Sequence[tuple[str, ...]]) -> str:
     """A titled table of fields, or the title alone when there are none."""
     if not part.fields:
         return f"{title}: {'no data' if before else 'empty'}.\n\n"
-    rows = before + field_rows(part.fields)
+    rows = [*before, *field_rows(part.fields)]
     return f"{title}:\n\n{table(('at', 'type', 'name', 'meaning'), rows)}\n"
 
 

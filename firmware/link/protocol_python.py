@@ -137,7 +137,7 @@ def layouts(model: Model) -> list[str]:
 
 
 def settings(model: Model) -> list[str]:
-    """The table of settings."""
+    """The table of settings, one line each."""
     lines = [
         "",
         "",
@@ -159,8 +159,7 @@ def settings(model: Model) -> list[str]:
         words = f'"{row["unit"]}", "{row["meaning"]}"'
         line = f"    Setting(SettingId.{name.upper()}, {numbers}, {words}),"
         if len(line) > WIDTH:
-            inner = line.strip().removeprefix("Setting(").removesuffix("),")
-            line = f"    Setting(\n        {inner}\n    ),"
+            raise ValueError(f"setting {name}: shorten its meaning")
         lines.append(line)
     return [*lines, ")"]
 

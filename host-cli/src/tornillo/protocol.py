@@ -377,12 +377,8 @@ SETTINGS = (
     Setting(SettingId.LATCH_RATE, 200, 20, 4000, "step/s", "speed of the second, slow approach"),
     Setting(SettingId.RAPID_RATE_X, 1000, 20, 4000, "step/s", "rapid speed of X"),
     Setting(SettingId.RAPID_RATE_Z, 1000, 20, 4000, "step/s", "rapid speed of Z"),
-    Setting(
-        SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide travel between switch X closing and opening"
-    ),
-    Setting(
-        SettingId.SWITCH_TRAVEL_Z, 0, 0, 200, "steps", "slide travel between switch Z closing and opening"
-    ),
+    Setting(SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide way, switch X closed to open"),
+    Setting(SettingId.SWITCH_TRAVEL_Z, 0, 0, 200, "steps", "slide way, switch Z closed to open"),
     Setting(SettingId.COIL_MODE, 0, 0, 1, "", "0 two phases on, 1 one phase on (wave)"),
     Setting(SettingId.ESTOP_FITTED, 1, 0, 1, "", "1 when the emergency-stop sense is wired"),
     Setting(SettingId.INVERT_X, 0, 0, 1, "", "1 turns motor X the other way"),
@@ -391,7 +387,5 @@ SETTINGS = (
     Setting(SettingId.DEAD_X, 0, 0, 1000, "steps", "dead steps of X, last measured"),
     Setting(SettingId.DEAD_Z, 0, 0, 1000, "steps", "dead steps of Z, last measured"),
     Setting(SettingId.HOMING_REPEATS, 3, 1, 9, "", "measurements per axis; the median counts"),
-    Setting(
-        SettingId.SPREAD_MAX, 2, 0, 50, "steps", "largest difference between these measurements"
-    ),
+    Setting(SettingId.SPREAD_MAX, 2, 0, 50, "steps", "largest spread of these measurements"),
 )

@@ -305,12 +305,16 @@
 #define OPERATION_CYLINDER_Z_END_AT         8
 #define OPERATION_CYLINDER_X_AT             12
 
-/* Why a part is refused. Checked in this order: first the whole part
- * (ALLOWANCE after DEPTH_OF_CUT, OUTSIDE_TRAVEL last), then each operation. */
+/* Why a part is refused. The first broken rule is answered. First for the
+ * whole part (operation 0): LENGTH, FORMAT, NAME, STEP_SIZE, STOCK,
+ * DEPTH_OF_CUT, ALLOWANCE, FEED, RETRACT, OPERATION_COUNT, OUTSIDE_TRAVEL.
+ * Then for each operation in turn: LENGTH, OPERATION_TYPE, OPERATION_SIZE,
+ * FORMAT, OUTSIDE_STOCK, EMPTY_CUT, OUTSIDE_TRAVEL, BLOCKED. After the last
+ * one (operation 0): LENGTH. */
 /* format is not 1, or a byte or flag that must be 0 is not */
 #define REFUSAL_FORMAT                      1
-/* shorter than its header, longer than 960 bytes, or the records do not end
- * where the image ends */
+/* shorter than its header, longer than 960 bytes, a record reaches behind
+ * the end of the image, or bytes are left after the last record */
 #define REFUSAL_LENGTH                      2
 /* empty, a character other than a-z 0-9 -, or characters after the first
  * zero */

@@ -4,7 +4,7 @@
 import textwrap
 from typing import Any
 
-from protocol_model import NOTICE, RECORD_HEAD, Field, Model
+from protocol_model import NOTICE, RECORD_HEAD, Field, Model, rule_order
 
 WIDTH = 79
 
@@ -171,8 +171,7 @@ def header(model: Model) -> str:
             model,
             "refusal",
             "REFUSAL",
-            "Why a part is refused. Checked in this order: first the whole part "
-            "(ALLOWANCE after DEPTH_OF_CUT, OUTSIDE_TRAVEL last), then each operation.",
+            "Why a part is refused. The first broken rule is answered. " + rule_order(model),
         ),
         *settings(model),
         "",

@@ -120,3 +120,16 @@ def load(path: Path) -> Model:
         name: layout(entry["fields"], first=RECORD_HEAD) for name, entry in raw["operation"].items()
     }
     return Model(raw, tuple(commands), layout(raw["image"]["header"]), operations)
+
+
+def rule_order(model: Model) -> str:
+    """In which order the rules of a part image are applied, as a sentence."""
+    image = model.raw["image"]
+    whole, each, end = (
+        ", ".join(name.upper() for name in image[key])
+        for key in ("part_rules", "operation_rules", "end_rules")
+    )
+    return (
+        f"First for the whole part (operation 0): {whole}. Then for each operation in turn: "
+        f"{each}. After the last one (operation 0): {end}."
+    )

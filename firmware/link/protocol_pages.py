@@ -4,7 +4,7 @@
 import re
 from collections.abc import Sequence
 
-from protocol_model import RECORD_HEAD, Field, Layout, Model
+from protocol_model import RECORD_HEAD, Field, Layout, Model, rule_order
 
 MARKER = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
@@ -115,7 +115,7 @@ def fill(model: Model, page: str) -> str:
         "flags": flags(model),
         "alarms": explained(model, "alarm", "cause", "remedy"),
         "resets": explained(model, "reset_cause", "meaning"),
-        "refusals": explained(model, "refusal", "rule", "remedy"),
+        "refusals": f"{rule_order(model)}\n\n{explained(model, 'refusal', 'rule', 'remedy')}",
         "image": image(model),
         "operations": operations(model),
         "settings": settings(model),

@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything that can be refused, as exceptions that say what to do next.
+
+`TornilloError` is the root; `str()` gives the message, `remedy` what a person tries next.
+"""
+
+from tornillo.protocol import Command, ErrorCode, Refusal
+from tornillo.protocol_texts import ERROR_TEXTS, REFUSAL_TEXTS
+
+
+class TornilloError(Exception):
+    """The input or the machine said no."""
+
+    def __init__(self, message: str, remedy: str) -> None:
+        """Keep what happened and what to do about it."""
+        super().__init__(message)
+        self.remedy = remedy
+
+
+class PartError(TornilloError):
+    """A part file is refused; the message starts with `file:line:`."""
+
+
+class MachineError(TornilloError):
+    """A machine file is refused."""
+
+
+class PortError(TornilloError):
+    """No port, several ports, or the port cannot be opened."""
+
+
+class LinkError(TornilloError):
+    """The chip does not answer, or not as the protocol says."""
+
+
+class AlarmError(TornilloError):
+    """The machine stopped with an alarm."""
+
+
+class ChipError(TornilloError):
+    """The chip answered a request with an error code.
+
+    For `ErrorCode.INVALID_PART`, `reason` and `operation` (from 1, 0 the whole part) say why.
+    """
+
+    def __init__(
+        self,
+        command: Command,
+        code: ErrorCode,
+        reason: Refusal | None = None,
+        operation: int = 0,
+    ) -> None:
+        """Say in words what the codes mean."""
+        message, remedy = ERROR_TEXTS[code]
+        if reason is not None:
+            place = f"operation {operation}" if operation else "the part as a whole"
+            explained = REFUSAL_TEXTS[reason]
+            message = f"{message}: {place}: {explained.cause}"
+            remedy = explained.remedy
+        super().__init__(f"{command.name} was refused: {message}", remedy)
+        self.command = command
+        self.code = code
+        self.reason = reason
+        self.operation = operation

@@ -1,0 +1,253 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The lathe as a Python object.
+
+    with Lathe.open() as lathe:
+        part = Part.load("test-bar.toml")
+        lathe.home()
+        slot = lathe.upload(part.image(lathe.machine()))
+        lathe.run(slot)
+        print(lathe.status())
+
+Every method may raise ChipError (the chip says no) or LinkError (it does not answer).
+All methods may be called from several threads.
+"""
+
+import struct
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+from tornillo.errors import ChipError, LinkError
+from tornillo.frames import crc16
+from tornillo.link import Link, Transport
+from tornillo.machine import Machine
+from tornillo.ports import find_port, open_port
+from tornillo.protocol import (
+    FRAME_TIMEOUT_MS,
+    PROTOCOL_VERSION,
+    REQUESTS,
+    RESPONSES,
+    SETTINGS,
+    SLOT_NONE,
+    UPLOAD_PIECE_MAX,
+    Axis,
+    Command,
+    ErrorCode,
+    HelloData,
+    PartInfoData,
+    Setting,
+    SettingGetData,
+    SettingId,
+    StatusData,
+    UploadCommitData,
+)
+from tornillo.status import Status
+from tornillo.stored import StoredPart
+
+Progress = Callable[[int, int], None]
+
+
+class Lathe:
+    """A connected lathe. Leaving the `with` block closes the port; a running part goes on."""
+
+    def __init__(self, transport: Transport, timeout_s: float = FRAME_TIMEOUT_MS / 1000) -> None:
+        """Talk over `transport`, an open serial port or anything with its read and write.
+
+        Raises LinkError when nothing answers, or something with another protocol version.
+        """
+        self._transport = transport
+        self._link = Link(transport, timeout_s)
+        self.hello = self._greet()
+
+    @classmethod
+    def open(cls, port: str | None = None) -> "Lathe":
+        """Open `port`, or the one lathe that is plugged in.
+
+        Raises PortError when there is no such port or it cannot be opened.
+        """
+        serial = open_port(port or find_port())
+        try:
+            return cls(serial)
+        except LinkError:
+            serial.close()
+            raise
+
+    def close(self) -> None:
+        """Close the port, if it can be closed."""
+        close = getattr(self._transport, "close", None)
+        if close is not None:
+            close()
+
+    def __enter__(self) -> "Lathe":
+        """Return the lathe itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close the port."""
+        self.close()
+
+    @property
+    def firmware(self) -> str:
+        """The firmware's version, like 0.1.0."""
+        hello = self.hello
+        return f"{hello.firmware_major}.{hello.firmware_minor}.{hello.firmware_patch}"
+
+    @property
+    def serial_number(self) -> str:
+        """The chip's serial number."""
+        return self.hello.serial.rstrip(b"\0 ").decode("ascii", "replace")
+
+    def machine(self) -> Machine:
+        """The machine as the chip describes it now."""
+        self.hello = self._greet()
+        return Machine.from_hello(self.hello)
+
+    def status(self) -> Status:
+        """Where the tool is and what the machine does."""
+        return Status.from_data(StatusData(*self._numbers(Command.STATUS)))
+
+    def home(self) -> None:
+        """Start to look for the limit switches; `status()` tells the end."""
+        self._request(Command.HOME)
+
+    def run(self, slot: int | None = None) -> None:
+        """Start to cut the part in `slot`, or the selected one; `status()` tells the rest."""
+        self._request(Command.RUN, SLOT_NONE if slot is None else slot)
+
+    def hold(self) -> None:
+        """Stop the run so that it can go on."""
+        self._request(Command.HOLD)
+
+    def resume(self) -> None:
+        """Go on after a hold."""
+        self._request(Command.RESUME)
+
+    def stop(self) -> None:
+        """End the run or the homing."""
+        self._request(Command.STOP)
+
+    def reset(self) -> None:
+        """Acknowledge an alarm."""
+        self._request(Command.RESET)
+
+    def zero(self, axis: Axis, steps: int) -> None:
+        """Say that the tool now stands at part coordinate `steps` (X: radius) of `axis`."""
+        self._request(Command.ZERO, axis, steps)
+
+    def upload(self, image: bytes, progress: Progress | None = None) -> int:
+        """Store a part image and return its slot.
+
+        `progress(sent, total)` is called after each piece. Raises ChipError with reason and
+        operation when the chip refuses the part, LinkError when it stored something else.
+        """
+        crc = crc16(image)
+        self._request(Command.UPLOAD_BEGIN, len(image), crc)
+        for offset in range(0, len(image), UPLOAD_PIECE_MAX):
+            piece = image[offset : offset + UPLOAD_PIECE_MAX]
+            self._request(Command.UPLOAD_DATA, offset, data=piece)
+            if progress is not None:
+                progress(offset + len(piece), len(image))
+        stored = UploadCommitData(*self._numbers(Command.UPLOAD_COMMIT))
+        if stored.crc != crc:
+            raise LinkError(
+                f"the chip stored another part than was sent (CRC {stored.crc:04x}, not {crc:04x})",
+                "upload it again; if it stays, the chip's memory is worn out",
+            )
+        return stored.slot
+
+    def part(self, slot: int) -> StoredPart | None:
+        """What is in `slot`; None when it is empty."""
+        info = PartInfoData(*self._numbers(Command.PART_INFO, slot))
+        return StoredPart.from_info(slot, info) if info.present else None
+
+    def parts(self) -> list[StoredPart]:
+        """Every stored part, by slot."""
+        found = (self.part(slot) for slot in range(self.hello.slots))
+        return [part for part in found if part is not None]
+
+    def find(self, name: str) -> StoredPart:
+        """The newest stored part called `name`, or the part in the slot of that number.
+
+        Raises ChipError with `ErrorCode.NO_PART` when there is none.
+        """
+        parts = self.parts()
+        named = [part for part in parts if part.name == name]
+        numbered = [part for part in parts if str(part.slot) == name]
+        found = max(named, key=lambda part: part.generation, default=None)
+        if found is None and numbered:
+            found = numbered[0]
+        if found is None:
+            raise ChipError(Command.PART_INFO, ErrorCode.NO_PART)
+        return found
+
+    def read(self, slot: int) -> bytes:
+        """The image of the part in `slot`."""
+        part = self.part(slot)
+        image = b""
+        while part is not None and len(image) < part.length:
+            piece = self._request(Command.PART_READ, slot, len(image))
+            if not piece:
+                break
+            image += piece
+        if part is None or len(image) != part.length or crc16(image) != part.crc:
+            raise ChipError(Command.PART_READ, ErrorCode.NO_PART)
+        return image
+
+    def select(self, slot: int) -> None:
+        """Make the part in `slot` the one that the RUN button cuts."""
+        self._request(Command.PART_SELECT, slot)
+
+    def delete(self, slot: int) -> None:
+        """Empty `slot`."""
+        self._request(Command.PART_DELETE, slot)
+
+    def setting(self, setting: SettingId) -> SettingGetData:
+        """Value and range of a setting."""
+        return SettingGetData(*self._numbers(Command.SETTING_GET, setting))
+
+    def settings(self) -> list[tuple[Setting, SettingGetData]]:
+        """Every setting that host and chip know, with its value and range."""
+        return [(entry, self.setting(entry.id)) for entry in SETTINGS]
+
+    def set_setting(self, setting: SettingId, value: int) -> None:
+        """Change a setting and store it."""
+        self._request(Command.SETTING_SET, setting, value)
+
+    def _greet(self) -> HelloData:
+        """Start the sequence anew and check the protocol version."""
+        data = self._request(Command.HELLO)
+        if data[:1] != bytes([PROTOCOL_VERSION]):
+            spoken = data[0] if data else "none"
+            raise LinkError(
+                f"the firmware speaks protocol {spoken}, this tornillo speaks {PROTOCOL_VERSION}",
+                "update the firmware, or install the tornillo version that belongs to it",
+            )
+        return HelloData(*self._unpack(Command.HELLO, data))
+
+    def _request(self, command: Command, *values: int, data: bytes = b"") -> bytes:
+        """Send a request made of `values` and `data`."""
+        try:
+            payload = REQUESTS[command].pack(*values) + data
+        except struct.error as error:
+            raise ChipError(command, ErrorCode.OUT_OF_RANGE) from error
+        return self._link.request(command, payload)
+
+    def _numbers(self, command: Command, *values: int) -> tuple[Any, ...]:
+        """Send a request and take its response apart."""
+        return self._unpack(command, self._request(command, *values))
+
+    def _unpack(self, command: Command, data: bytes) -> tuple[Any, ...]:
+        """Take response data apart; raises LinkError for a wrong length."""
+        try:
+            return RESPONSES[command].unpack(data)
+        except struct.error as error:
+            raise LinkError(
+                f"the answer to {command.name} has {len(data)} bytes, not "
+                f"{RESPONSES[command].size}",
+                "use the tornillo version that belongs to this firmware",
+            ) from error

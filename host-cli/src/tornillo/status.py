@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The answer to STATUS with names instead of numbers."""
+
+from dataclasses import dataclass
+
+from tornillo.errors import AlarmError, LinkError
+from tornillo.protocol import (
+    PERMILLE_DONE,
+    SLOT_NONE,
+    Alarm,
+    Axis,
+    ResetCause,
+    State,
+    StatusData,
+    StatusFlag,
+)
+from tornillo.protocol_texts import ALARM_TEXTS
+
+AXIS_ALARMS = frozenset(
+    {
+        Alarm.HOME_NOT_FOUND,
+        Alarm.HOME_NOT_RELEASED,
+        Alarm.LIMIT,
+        Alarm.WRONG_SWITCH,
+        Alarm.DEAD_STEPS_SPREAD,
+    }
+)
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the machine is doing.
+
+    `x`, `z`: tool in machine steps. `dead_x`, `dead_z`: steps. `slot`: the running or selected
+    part, None for none. `operation`, `pass_number`: from 1, 0 for none. `permille`: progress
+    of the run, 1000 after a finished one.
+    """
+
+    state: State
+    alarm: Alarm
+    alarm_axis: Axis | None
+    flags: StatusFlag
+    x: int
+    z: int
+    dead_x: int
+    dead_z: int
+    slot: int | None
+    operation: int
+    operations: int
+    pass_number: int
+    passes: int
+    permille: int
+    reset_cause: ResetCause
+    bad_frames: int
+    uptime_ms: int
+    stream_low: int
+
+    @classmethod
+    def from_data(cls, data: StatusData) -> "Status":
+        """Name the numbers; raises LinkError for one that this tornillo does not know."""
+        values = data._asdict()
+        detail = values.pop("alarm_detail")
+        try:
+            alarm = Alarm(data.alarm)
+            values["state"] = State(data.state)
+            values["reset_cause"] = ResetCause(data.reset_cause)
+            axis = Axis(detail) if alarm in AXIS_ALARMS else None
+        except ValueError as error:
+            raise LinkError(
+                f"the status of the lathe is unknown to this tornillo: {error}",
+                "use the tornillo version that belongs to this firmware",
+            ) from error
+        values["alarm"] = alarm
+        values["flags"] = StatusFlag(data.flags)
+        values["slot"] = None if data.slot == SLOT_NONE else data.slot
+        return cls(alarm_axis=axis, **values)
+
+    @property
+    def homed(self) -> bool:
+        """Whether the position is trusted."""
+        return StatusFlag.HOMED in self.flags
+
+    @property
+    def finished(self) -> bool:
+        """Whether the machine stands still after a part was cut to its end."""
+        return self.state is State.IDLE and self.permille == PERMILLE_DONE
+
+    @property
+    def moving(self) -> bool:
+        """Whether the machine is homing or cutting."""
+        return self.state in (State.HOMING, State.RUNNING)
+
+    def alarm_error(self) -> AlarmError:
+        """The alarm in words, with what to do about it."""
+        text = ALARM_TEXTS[self.alarm]
+        axis = f" of {self.alarm_axis.name}" if self.alarm_axis is not None else ""
+        return AlarmError(f"alarm {self.alarm.name}{axis}: {text.cause}", text.remedy)

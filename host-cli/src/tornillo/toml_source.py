@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A TOML text that knows its lines, read key by key with checks that teach.
+
+tomllib gives values without lines; `line_numbers` finds the lines again, so that every
+refusal can name the line to correct.
+"""
+
+import difflib
+import math
+import re
+import tomllib
+from collections.abc import Mapping
+from typing import NoReturn
+
+from tornillo.errors import PartError
+
+Place = tuple[str | int, ...]
+_HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")
+_KEY = re.compile(r"\s*([\w-]+)\s*[.=]")
+_NOT_BRACKETS = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
+_AT_LINE = re.compile(r" \(at line (\d+), column \d+\)| \(at end of document\)")
+
+
+def line_numbers(text: str) -> dict[Place, int]:
+    """The line, from 1, of every table and key; array tables are counted from 0."""
+    places: dict[Place, int] = {}
+    table: Place = ()
+    depth = 0
+    for number, line in enumerate(text.splitlines(), start=1):
+        if depth == 0 and (header := _HEADER.match(line)):
+            table = tuple(header[2].split("."))
+            if header[1] == "[[":
+                count = sum(place[:-1] == table for place in places if isinstance(place[-1], int))
+                table = (*table, count)
+            places[table] = number
+            continue
+        if depth == 0 and (key := _KEY.match(line)):
+            places.setdefault((*table, key[1]), number)
+        bare = _NOT_BRACKETS.sub("", line)
+        depth += sum(bare.count(mark) for mark in "[{") - sum(bare.count(mark) for mark in "]}")
+    return places
+
+
+class Source:
+    """The text of one part file."""
+
+    def __init__(self, name: str, text: str) -> None:
+        """Parse `text`; `name` is what messages call the file.
+
+        Raises PartError when it is not TOML.
+        """
+        self.name = name
+        self.lines = line_numbers(text)
+        try:
+            self.values = tomllib.loads(text)
+        except tomllib.TOMLDecodeError as error:
+            found = _AT_LINE.search(str(error))
+            line = int(found[1]) if found and found[1] else len(text.splitlines())
+            reason = _AT_LINE.sub("", str(error))
+            raise PartError(
+                f"{name}:{line}: this is not TOML: {reason}",
+                'look for a missing quote, bracket or "=" in this line or the one before',
+            ) from error
+
+    def refuse(self, place: Place, message: str, remedy: str) -> NoReturn:
+        """Raise PartError for the line of `place`, or of the nearest table around it."""
+        raise self.error(place, message, remedy)
+
+    def error(self, place: Place, message: str, remedy: str) -> PartError:
+        """The PartError for `place`."""
+        around = place
+        while around and around not in self.lines:
+            around = around[:-1]
+        return PartError(f"{self.name}:{self.lines.get(around, 1)}: {message}", remedy)
+
+
+class Table:
+    """One table of a part file; every key that is read is known, the others are refused."""
+
+    def __init__(self, source: Source, place: Place, values: object, title: str) -> None:
+        """Look at `values` found at `place`; `title` names it in messages.
+
+        Raises PartError when it is not a table.
+        """
+        self.source = source
+        self.place = place
+        self.title = title
+        if not isinstance(values, Mapping):
+            self.refuse("", f"{title} must be a table", f"write {title} on a line of its own")
+        self._values = dict(values)
+        self._known: list[str] = []
+
+    def refuse(self, key: str, message: str, remedy: str) -> NoReturn:
+        """Raise PartError for the line of `key`, or of the table when `key` is empty."""
+        place = (*self.place, key) if key else self.place
+        self.source.refuse(place, message, remedy)
+
+    def table(self, key: str) -> "Table":
+        """The table `key` inside this one, which must be there."""
+        return Table(self.source, (*self.place, key), self._take(key, f"[{key}]"), f"[{key}]")
+
+    def tables(self, key: str) -> "list[object]":
+        """The array of tables `key`, which must have an entry."""
+        found = self._take(key, f"[[{key}]]")
+        if not isinstance(found, list) or not found:
+            self.refuse(key, f"{key} must be written as [[{key}]]", "use two square brackets")
+        return list(found)
+
+    def text(self, key: str, choices: tuple[str, ...] = ()) -> str:
+        """The string `key`, one of `choices` when there are any."""
+        value = self._take(key, f'{key} = "{choices[0] if choices else "..."}"')
+        if not isinstance(value, str):
+            self.refuse(key, f"{self.title}: {key} must be a text", f'write {key} = "{value}"')
+        if choices and value not in choices:
+            remedy = _nearest(value, choices) or f"use one of: {', '.join(choices)}"
+            self.refuse(key, f'{self.title}: {key} cannot be "{value}"', remedy)
+        return value
+
+    def number(self, key: str, default: float | None = None) -> float:
+        """The finite number `key`, or `default` when it is missing."""
+        if default is not None and key not in self._values:
+            self._known.append(key)
+            return default
+        return self._number(key, self._take(key, f"{key} = 1.0"))
+
+    def pair(self, key: str) -> tuple[float, float]:
+        """The two finite numbers `key = [first, second]`."""
+        value = self._take(key, f"{key} = [0.0, -1.0]")
+        if not isinstance(value, list) or len(value) != 2:
+            self.refuse(
+                key,
+                f"{self.title}: {key} must be two numbers, [start, end]",
+                f"write for example {key} = [0.0, -1.0]",
+            )
+        return self._number(key, value[0]), self._number(key, value[1])
+
+    def finish(self) -> None:
+        """Refuse the first key that was not read, naming the nearest known one."""
+        for key in self._values:
+            if key not in self._known:
+                remedy = _nearest(key, self._known) or f"known keys: {', '.join(self._known)}"
+                self.refuse(key, f'{self.title}: unknown key "{key}"', remedy)
+
+    def _take(self, key: str, example: str) -> object:
+        """The value of `key`, which must be there."""
+        self._known.append(key)
+        if key not in self._values:
+            for unknown in self._values:
+                if _nearest(unknown, [key]):
+                    self.refuse(
+                        unknown,
+                        f'{self.title}: unknown key "{unknown}"',
+                        f'did you mean "{key}"?',
+                    )
+            self.refuse("", f"{self.title}: {key} is missing", f"add a line like {example}")
+        return self._values[key]
+
+    def _number(self, key: str, value: object) -> float:
+        """`value` as a finite number."""
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            self.refuse(
+                key,
+                f"{self.title}: {key} must be a number, not {value!r}",
+                "write it without quotes, with a decimal point",
+            )
+        if not math.isfinite(value):
+            self.refuse(key, f"{self.title}: {key} must be finite", "write an ordinary number")
+        return float(value)
+
+
+def _nearest(word: str, known: "list[str] | tuple[str, ...]") -> str:
+    """A question for the known word nearest to `word`; empty when none is near."""
+    close = difflib.get_close_matches(word, known, n=1)
+    return f'did you mean "{close[0]}"?' if close else ""

@@ -110,7 +110,6 @@
 /* Commands. _REQUEST_SIZE: payload bytes; _RESPONSE_SIZE: payload bytes
  * with the error byte; an open payload has _MIN and _MAX. _AT: offset in
  * the payload. */
-
 /* Who are you? Starts the sequence anew; always executed. */
 #define COMMAND_HELLO                       0x01
 #define HELLO_REQUEST_SIZE                  0
@@ -129,7 +128,6 @@
 #define HELLO_RESPONSE_ZERO_Z_AT            28
 #define HELLO_RESPONSE_SERIAL_AT            32
 #define HELLO_RESPONSE_MAX_RATE_AT          40
-
 /* Where is the tool, what is the machine doing? */
 #define COMMAND_STATUS                      0x02
 #define STATUS_REQUEST_SIZE                 0
@@ -152,55 +150,46 @@
 #define STATUS_RESPONSE_BAD_FRAMES_AT       25
 #define STATUS_RESPONSE_UPTIME_MS_AT        27
 #define STATUS_RESPONSE_STREAM_LOW_AT       31
-
 /* Find the limit switches, X first, and measure the dead steps. Answered at
  * once; STATUS tells the end. */
 #define COMMAND_HOME                        0x03
 #define HOME_REQUEST_SIZE                   0
 #define HOME_RESPONSE_SIZE                  1
-
 /* Cut a part. Answered when the chip has checked the part again; STATUS
  * tells the rest. */
 #define COMMAND_RUN                         0x04
 #define RUN_REQUEST_SIZE                    1
 #define RUN_RESPONSE_SIZE                   1
 #define RUN_SLOT_AT                         0
-
 /* Stop the run so that it can go on. */
 #define COMMAND_HOLD                        0x05
 #define HOLD_REQUEST_SIZE                   0
 #define HOLD_RESPONSE_SIZE                  1
-
 /* Go on after HOLD. */
 #define COMMAND_RESUME                      0x06
 #define RESUME_REQUEST_SIZE                 0
 #define RESUME_RESPONSE_SIZE                1
-
 /* End the run or the homing. The position stays trusted, except while
  * homing (alarm STOPPED_HOMING). */
 #define COMMAND_STOP                        0x07
 #define STOP_REQUEST_SIZE                   0
 #define STOP_RESPONSE_SIZE                  1
-
 /* Acknowledge an alarm. */
 #define COMMAND_RESET                       0x08
 #define RESET_REQUEST_SIZE                  0
 #define RESET_RESPONSE_SIZE                 1
-
 /* The tool now stands at this part coordinate; the part zero is stored. */
 #define COMMAND_ZERO                        0x09
 #define ZERO_REQUEST_SIZE                   5
 #define ZERO_RESPONSE_SIZE                  1
 #define ZERO_AXIS_AT                        0
 #define ZERO_VALUE_AT                       1
-
 /* Start to receive a part image; an upload under way is forgotten. */
 #define COMMAND_UPLOAD_BEGIN                0x10
 #define UPLOAD_BEGIN_REQUEST_SIZE           4
 #define UPLOAD_BEGIN_RESPONSE_SIZE          1
 #define UPLOAD_BEGIN_LENGTH_AT              0
 #define UPLOAD_BEGIN_CRC_AT                 2
-
 /* One piece of the image. */
 #define COMMAND_UPLOAD_DATA                 0x11
 #define UPLOAD_DATA_REQUEST_MIN             3
@@ -208,14 +197,12 @@
 #define UPLOAD_DATA_RESPONSE_SIZE           1
 #define UPLOAD_DATA_OFFSET_AT               0
 #define UPLOAD_DATA_DATA_AT                 2
-
 /* Check the whole image and make it a part. */
 #define COMMAND_UPLOAD_COMMIT               0x12
 #define UPLOAD_COMMIT_REQUEST_SIZE          0
 #define UPLOAD_COMMIT_RESPONSE_SIZE         4
 #define UPLOAD_COMMIT_RESPONSE_SLOT_AT      1
 #define UPLOAD_COMMIT_RESPONSE_CRC_AT       2
-
 /* What is in a slot? */
 #define COMMAND_PART_INFO                   0x13
 #define PART_INFO_REQUEST_SIZE              1
@@ -228,7 +215,6 @@
 #define PART_INFO_RESPONSE_CRC_AT           7
 #define PART_INFO_RESPONSE_OPERATIONS_AT    9
 #define PART_INFO_RESPONSE_NAME_AT          10
-
 /* Read a stored image. */
 #define COMMAND_PART_READ                   0x14
 #define PART_READ_REQUEST_SIZE              3
@@ -237,19 +223,16 @@
 #define PART_READ_SLOT_AT                   0
 #define PART_READ_OFFSET_AT                 1
 #define PART_READ_RESPONSE_DATA_AT          1
-
 /* Choose the part that the RUN button cuts. */
 #define COMMAND_PART_SELECT                 0x15
 #define PART_SELECT_REQUEST_SIZE            1
 #define PART_SELECT_RESPONSE_SIZE           1
 #define PART_SELECT_SLOT_AT                 0
-
 /* Empty a slot. */
 #define COMMAND_PART_DELETE                 0x16
 #define PART_DELETE_REQUEST_SIZE            1
 #define PART_DELETE_RESPONSE_SIZE           1
 #define PART_DELETE_SLOT_AT                 0
-
 /* Read a setting and its range. */
 #define COMMAND_SETTING_GET                 0x20
 #define SETTING_GET_REQUEST_SIZE            1
@@ -258,7 +241,6 @@
 #define SETTING_GET_RESPONSE_VALUE_AT       1
 #define SETTING_GET_RESPONSE_MINIMUM_AT     5
 #define SETTING_GET_RESPONSE_MAXIMUM_AT     9
-
 /* Change a setting; stored in EEPROM before the answer. */
 #define COMMAND_SETTING_SET                 0x21
 #define SETTING_SET_REQUEST_SIZE            5

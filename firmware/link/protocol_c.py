@@ -85,7 +85,6 @@ def commands(model: Model) -> list[str]:
     ]
     for command in model.commands:
         upper = command.name.upper()
-        lines.append("")
         lines += comment(command.meaning)
         lines.append(define(f"COMMAND_{upper}", f"0x{command.code:02X}"))
         for suffix, part, extra in (

@@ -1,0 +1,212 @@
+/* The serial interface engine: cable, bus reset, suspend, and who gets which
+ * transaction.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ *
+ * States (USB 2.0, section 9.1):
+ *
+ *    DETACHED --VBUS for 50 ms--> DEFAULT --SET_ADDRESS--> ADDRESS
+ *        ^                         ^                         |  ^
+ *        |                         |            SET_CONFIGURATION(1) (0)
+ *        |                     bus reset                     v  |
+ *        +--no VBUS for 5 ms--  from any                  CONFIGURED
+ *
+ * Attached, powered and default are one state here: before the first bus
+ * reset no transaction can reach us. The engine takes the first reset itself
+ * as an interrupt; nothing waits for the bus to become quiet.
+ */
+#include "usb/engine.h"
+
+#include "usb/cdc.h"
+#include "sfr.h"
+#include "usb/usb_config.h"
+
+#define TYPE_STRING 3
+
+/* The engine off and everything as after power-on. */
+static void detach(void)
+{
+    UCON = 0;
+    UIE = 0;
+    UIR = 0;
+    usb_state = USB_DETACHED;
+    cdc_reset();
+}
+
+/* Pull-up on D+: from now on the host sees a full-speed device. */
+static void attach(void)
+{
+    UCFG = UCFG_UPUEN | UCFG_FSEN;
+    UIR = 0;
+    UEIE = 0;
+    UIE = UIR_URSTIF | UIR_TRNIF | UIR_IDLEIF | UIR_STALLIF;
+    usb_state = USB_DEFAULT;
+    UCON = UCON_USBEN;
+}
+
+/* 1 = `character` may stand in a serial number; Windows refuses a comma. */
+static uint8_t is_serial_character(uint8_t character)
+{
+    return character > 0x20 && character < 0x7F && character != ',';
+}
+
+static void read_serial_number(void)
+{
+    uint8_t i;
+    uint8_t valid = 1;
+
+    usb_serial_descriptor[0] = USB_SERIAL_DESCRIPTOR_LENGTH;
+    usb_serial_descriptor[1] = TYPE_STRING;
+    EECON1 = 0; /* data EEPROM */
+    for (i = 2; i < USB_SERIAL_DESCRIPTOR_LENGTH; i += 2) {
+        EEADR = USB_SERIAL_EEPROM_ADDRESS - 1 + (i >> 1);
+        EECON1 = 1; /* RD: the byte is there in the next cycle */
+        usb_serial_descriptor[i] = EEDATA;
+        usb_serial_descriptor[i + 1] = 0;
+        if (!is_serial_character(EEDATA))
+            valid = 0;
+    }
+    if (valid)
+        return;
+    for (i = 2; i < USB_SERIAL_DESCRIPTOR_LENGTH; i += 2)
+        usb_serial_descriptor[i] = '0';
+}
+
+void usb_init(void)
+{
+    UCON = 0;
+    read_serial_number();
+    usb_bd[BD_EP0_OUT].adrl = (uint16_t)usb_ep0_out & 0xFF;
+    usb_bd[BD_EP0_OUT].adrh = (uint16_t)usb_ep0_out >> 8;
+    usb_bd[BD_EP0_IN].adrl = (uint16_t)usb_ep0_in & 0xFF;
+    usb_bd[BD_EP0_IN].adrh = (uint16_t)usb_ep0_in >> 8;
+    usb_bd[BD_EP1_IN].adrl = (uint16_t)usb_ep1_in & 0xFF;
+    usb_bd[BD_EP1_IN].adrh = (uint16_t)usb_ep1_in >> 8;
+    usb_bd[BD_EP2_OUT].adrl = (uint16_t)cdc_packet & 0xFF;
+    usb_bd[BD_EP2_OUT].adrh = (uint16_t)cdc_packet >> 8;
+    usb_bd[BD_EP2_IN].adrl = (uint16_t)cdc_reply & 0xFF;
+    usb_bd[BD_EP2_IN].adrh = (uint16_t)cdc_reply >> 8;
+    usb_received = 0;
+    usb_vbus_ms = 0;
+    detach();
+    cdc_line_coding_default();
+    IPR2 &= (uint8_t)~IPR2_USBIP;
+    PIE2 |= PIE2_USBIE;
+}
+
+/* Bus reset: address 0, only endpoint 0, nothing left of what was. */
+static void bus_reset(void)
+{
+    uint8_t i;
+
+    UADDR = 0;
+    UEP1 = 0;
+    UEP2 = 0;
+    /* Transactions of the time before the reset are of no interest. The next
+     * entry of the FIFO shows up within 6 cycles of clearing TRNIF. */
+    for (i = 0; i < USTAT_DEPTH; i++) {
+        UIR &= (uint8_t)~UIR_TRNIF;
+        __asm nop __endasm;
+        __asm nop __endasm;
+        __asm nop __endasm;
+    }
+    usb_state = USB_DEFAULT;
+    cdc_reset();
+    UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
+    control_reset();
+    UIE &= (uint8_t)~UIR_ACTVIF;
+    UCON = UCON_USBEN; /* PKTDIS and SUSPND off */
+    UIR &= (uint8_t)~UIR_URSTIF;
+}
+
+/* 3 ms without traffic. The chip goes on cutting; only the transceiver sleeps
+ * until the bus moves. */
+static void suspend(void)
+{
+    UIR &= (uint8_t)~UIR_IDLEIF;
+    UIR &= (uint8_t)~UIR_ACTVIF;
+    UIE |= UIR_ACTVIF;
+    UCON |= UCON_SUSPND;
+}
+
+/* Traffic again. ACTVIF cannot be cleared before the engine's clock has come
+ * back; as its interrupt is off until the next suspend nobody has to wait. */
+static void resume(void)
+{
+    UCON &= (uint8_t)~UCON_SUSPND;
+    UIE &= (uint8_t)~UIR_ACTVIF;
+    UIR &= (uint8_t)~UIR_ACTVIF;
+}
+
+/* The oldest transaction of the FIFO. Its descriptor is ours again. */
+static void transaction(void)
+{
+    uint8_t ustat = USTAT & USTAT_MASK;
+
+    /* Advance the FIFO first: what follows may start the next transaction. */
+    UIR &= (uint8_t)~UIR_TRNIF;
+    if (ustat == USTAT_EP0_OUT)
+        control_ep0_out();
+    else if (ustat == USTAT_EP0_IN)
+        control_ep0_in();
+    else if (ustat == USTAT_EP1_IN)
+        cdc_transaction(EP1_IN_BIT);
+    else if (ustat == USTAT_EP2_OUT)
+        cdc_transaction(EP2_OUT_BIT);
+    else if (ustat == USTAT_EP2_IN)
+        cdc_transaction(EP2_IN_BIT);
+}
+
+void usb_service(void)
+{
+    uint8_t flags;
+
+    /* First, so that whatever happens from here on raises it again. */
+    PIR2 &= (uint8_t)~PIR2_USBIF;
+
+    flags = UIR & UIE;
+    if (flags & UIR_ACTVIF)
+        resume();
+    if (flags & UIR_URSTIF) {
+        bus_reset();
+        return;
+    }
+    if (flags & UIR_IDLEIF)
+        suspend();
+    if (flags & UIR_STALLIF) {
+        /* The stall itself stays in the buffer descriptor. */
+        UEP0 &= (uint8_t)~UEP_EPSTALL;
+        UEP1 &= (uint8_t)~UEP_EPSTALL;
+        UEP2 &= (uint8_t)~UEP_EPSTALL;
+        UIR &= (uint8_t)~UIR_STALLIF;
+    }
+    if (flags & UIR_TRNIF)
+        transaction();
+    cdc_pump();
+}
+
+void usb_tick(void)
+{
+    uint8_t attached = usb_state != USB_DETACHED;
+    uint8_t limit = USB_ATTACH_MS;
+
+    if (attached)
+        limit = USB_DETACH_MS;
+    if (((USB_VBUS_PORT & USB_VBUS_MASK) != 0) == attached) {
+        usb_vbus_ms = 0;
+    } else if (++usb_vbus_ms >= limit) {
+        usb_vbus_ms = 0;
+        if (attached)
+            detach();
+        else
+            attach();
+    }
+    /* A net under the interrupt: a flag that is up gets served. */
+    if (UIR & UIE)
+        PIR2 |= PIR2_USBIF;
+}
+
+uint8_t usb_configured(void)
+{
+    return usb_state == USB_CONFIGURED;
+}

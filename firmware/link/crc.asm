@@ -18,6 +18,7 @@
 ; and PROD are free for the callee.
 
         include <p18f4550.inc>
+        radix   dec
 
         global  _crc16_update, _crc16_block
 

@@ -30,6 +30,7 @@ static void detach(void)
     UIE = 0;
     UIR = 0;
     usb_state = USB_DETACHED;
+    usb_vbus_ms = 0;
     cdc_reset();
 }
 
@@ -41,6 +42,7 @@ static void attach(void)
     UEIE = 0;
     UIE = UIR_URSTIF | UIR_TRNIF | UIR_IDLEIF | UIR_STALLIF;
     usb_state = USB_DEFAULT;
+    usb_vbus_ms = 0;
     UCON = UCON_USBEN;
 }
 
@@ -76,18 +78,8 @@ void usb_init(void)
 {
     UCON = 0;
     read_serial_number();
-    usb_bd[BD_EP0_OUT].adrl = (uint16_t)usb_ep0_out & 0xFF;
-    usb_bd[BD_EP0_OUT].adrh = (uint16_t)usb_ep0_out >> 8;
-    usb_bd[BD_EP0_IN].adrl = (uint16_t)usb_ep0_in & 0xFF;
-    usb_bd[BD_EP0_IN].adrh = (uint16_t)usb_ep0_in >> 8;
-    usb_bd[BD_EP1_IN].adrl = (uint16_t)usb_ep1_in & 0xFF;
-    usb_bd[BD_EP1_IN].adrh = (uint16_t)usb_ep1_in >> 8;
-    usb_bd[BD_EP2_OUT].adrl = (uint16_t)cdc_packet & 0xFF;
-    usb_bd[BD_EP2_OUT].adrh = (uint16_t)cdc_packet >> 8;
-    usb_bd[BD_EP2_IN].adrl = (uint16_t)cdc_reply & 0xFF;
-    usb_bd[BD_EP2_IN].adrh = (uint16_t)cdc_reply >> 8;
+    usb_set_up_descriptors();
     usb_received = 0;
-    usb_vbus_ms = 0;
     detach();
     cdc_line_coding_default();
     IPR2 &= (uint8_t)~IPR2_USBIP;
@@ -100,6 +92,7 @@ static void bus_reset(void)
     uint8_t i;
 
     UADDR = 0;
+    UEP0 = 0;
     UEP1 = 0;
     UEP2 = 0;
     /* Transactions of the time before the reset are of no interest. The next
@@ -112,8 +105,8 @@ static void bus_reset(void)
     }
     usb_state = USB_DEFAULT;
     cdc_reset();
-    UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
     control_reset();
+    UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
     UIE &= (uint8_t)~UIR_ACTVIF;
     UCON = UCON_USBEN; /* PKTDIS and SUSPND off */
     UIR &= (uint8_t)~UIR_URSTIF;
@@ -187,19 +180,18 @@ void usb_service(void)
 
 void usb_tick(void)
 {
-    uint8_t attached = usb_state != USB_DETACHED;
-    uint8_t limit = USB_ATTACH_MS;
+    uint8_t vbus = USB_VBUS_PORT & USB_VBUS_MASK;
 
-    if (attached)
-        limit = USB_DETACH_MS;
-    if (((USB_VBUS_PORT & USB_VBUS_MASK) != 0) == attached) {
-        usb_vbus_ms = 0;
-    } else if (++usb_vbus_ms >= limit) {
-        usb_vbus_ms = 0;
-        if (attached)
-            detach();
-        else
+    if (usb_state == USB_DETACHED) {
+        if (!vbus)
+            usb_vbus_ms = 0;
+        else if (++usb_vbus_ms == USB_ATTACH_MS)
             attach();
+    } else {
+        if (vbus)
+            usb_vbus_ms = 0;
+        else if (++usb_vbus_ms == USB_DETACH_MS)
+            detach();
     }
     /* A net under the interrupt: a flag that is up gets served. */
     if (UIR & UIE)

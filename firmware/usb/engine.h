@@ -157,6 +157,11 @@ void cdc_pump(void);               /* arm what can be armed */
 uint8_t cdc_request(void);         /* class request in usb_ep0_out */
 void cdc_line_coding_arrived(void);
 
+/* ---- memory.asm --------------------------------------------------------
+ * Writes the address of each buffer into its descriptor.
+ */
+void usb_set_up_descriptors(void);
+
 /* ---- fetch.asm ----------------------------------------------------------
  * Copies `count` bytes (1..16) of flash from `address` on to usb_ep0_in. Saves
  * the table pointer and TABLAT, so it may interrupt a reader of flash.

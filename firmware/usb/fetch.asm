@@ -13,6 +13,7 @@
 ; back as they were.
 
         include <p18f4550.inc>
+        radix   dec
 
         global  _usb_fetch
         extern  _usb_ep0_in

@@ -7,6 +7,10 @@
 ; variables. What each is for is said in engine.h and cdc.h. In assembly because
 ; SDCC loses variables with fixed addresses that touch each other.
 
+        include <p18f4550.inc>
+        radix   dec
+
+        global  _usb_set_up_descriptors
         global  _usb_bd, _usb_ep0_out, _usb_ep0_in, _usb_ep1_in
         global  _cdc_packet, _cdc_reply
         global  _usb_serial_descriptor, _usb_line_coding
@@ -41,5 +45,24 @@ _usb_notify             res     1
 _usb_line_state         res     1
 _usb_received           res     1
 _usb_sending            res     1       ; 0x4F1; 14 bytes to 0x4FF are free
+
+; ADRL and ADRH of the buffer descriptor `index`.
+buffer  macro   index, address
+        movlw   LOW (address)
+        movwf   _usb_bd + 4 * index + 2, BANKED
+        movlw   HIGH (address)
+        movwf   _usb_bd + 4 * index + 3, BANKED
+        endm
+
+; void usb_set_up_descriptors(void);    (manual: engine.h)
+usb_memory_code code
+_usb_set_up_descriptors:
+        banksel _usb_bd
+        buffer  0, _usb_ep0_out
+        buffer  1, _usb_ep0_in
+        buffer  3, _usb_ep1_in
+        buffer  4, _cdc_packet
+        buffer  5, _cdc_reply
+        return
 
         end

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wait for a run or a homing to end, showing its progress; Ctrl-C holds or stops it."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import click
+
+from tornillo.errors import ChipError, TornilloError
+from tornillo.lathe import Lathe
+from tornillo.protocol import PERMILLE_DONE, ErrorCode, State
+from tornillo.status import Status
+
+POLL_S = 0.1
+#: Shows how many permille of the run are done and what is being cut.
+Display = Callable[[int, str], None]
+
+
+def follow_homing(lathe: Lathe) -> Status:
+    """Wait until homing has ended; return the status then.
+
+    Raises AlarmError when it failed, TornilloError after Ctrl-C.
+    """
+    try:
+        while (status := lathe.status()).state is State.HOMING:
+            time.sleep(POLL_S)
+    except KeyboardInterrupt:
+        lathe.stop()
+        raise TornilloError(
+            "homing was stopped", "acknowledge with `tornillo reset`, then `tornillo home` again"
+        ) from None
+    if status.state is State.ALARM:
+        raise status.alarm_error()
+    return status
+
+
+def follow_run(lathe: Lathe) -> None:
+    """Show the progress of the run until the part is finished.
+
+    Raises AlarmError for an alarm, TornilloError when the run was stopped or held by Ctrl-C.
+    """
+    try:
+        with _display() as show:
+            status = _until_standing(lathe, show)
+    except KeyboardInterrupt:
+        raise _held(lathe) from None
+    if status.state is State.ALARM:
+        raise status.alarm_error()
+    if not status.finished:
+        raise TornilloError(
+            f"the run was stopped after {status.permille / 10:.1f} %",
+            "start it again from its beginning with `tornillo run`",
+        )
+
+
+def _until_standing(lathe: Lathe, show: Display) -> Status:
+    """Poll until the machine neither cuts nor holds."""
+    while (status := lathe.status()).state in (State.RUNNING, State.HOLD):
+        show(status.permille, _describe(status))
+        time.sleep(POLL_S)
+    if status.finished:
+        show(PERMILLE_DONE, "finished")
+    return status
+
+
+def _describe(status: Status) -> str:
+    """What is being cut."""
+    text = f"operation {status.operation} of {status.operations}"
+    if status.passes:
+        text += f", pass {status.pass_number} of {status.passes}"
+    return f"{text}, held" if status.state is State.HOLD else text
+
+
+def _held(lathe: Lathe) -> TornilloError:
+    """Hold the run after Ctrl-C and say where it stands."""
+    try:
+        lathe.hold()
+    except ChipError as error:
+        if error.code is not ErrorCode.NOT_RUNNING:
+            raise
+        return TornilloError("interrupted; the lathe was not cutting", "see `tornillo status`")
+    status = lathe.status()
+    return TornilloError(
+        f"held by Ctrl-C at {_describe(status).removesuffix(', held')}; nothing is lost",
+        "go on with `tornillo resume --follow`, or give up with `tornillo stop`",
+    )
+
+
+@contextmanager
+def _display() -> Iterator[Display]:
+    """A progress bar on a terminal, otherwise a line for each new operation and pass."""
+    if sys.stderr.isatty():
+        with _bar() as display:
+            yield display
+    else:
+        yield _line_printer()
+
+
+@contextmanager
+def _bar() -> Iterator[Display]:
+    """A progress bar."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+    columns = (
+        BarColumn(),
+        TextColumn("{task.percentage:5.1f} %"),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as progress:
+        task = progress.add_task("starting", total=PERMILLE_DONE)
+
+        def show(permille: int, text: str) -> None:
+            progress.update(task, completed=permille, description=text)
+
+        yield show
+
+
+def _line_printer() -> Display:
+    """Print a line whenever the text changes."""
+    last = ""
+
+    def show(permille: int, text: str) -> None:
+        nonlocal last
+        if text != last:
+            click.echo(f"{permille / 10:5.1f} %  {text}", err=True)
+        last = text
+
+    return show

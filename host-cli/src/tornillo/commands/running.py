@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verbs that move the machine or tell about it: home, run, hold, resume, stop, reset, status."""
+
+import dataclasses
+
+import click
+
+from tornillo.commands.connection import connected, json_option, print_json
+from tornillo.commands.following import follow_homing, follow_run
+from tornillo.lathe import Lathe
+from tornillo.protocol import Axis, State, StatusFlag
+from tornillo.protocol_texts import ALARM_TEXTS
+from tornillo.status import Status
+
+NM_PER_MM = 1_000_000
+follow_option = click.option("--follow", is_flag=True, help="Show the progress until the end.")
+
+
+@click.command()
+def home() -> None:
+    """Find the limit switches and measure the dead steps; waits for the end.
+
+    Ctrl-C stops the slides.
+
+    \b
+    Example: tornillo home
+    """
+    with connected() as lathe:
+        lathe.home()
+        status = follow_homing(lathe)
+    click.echo(f"homed; dead steps: X {status.dead_x}, Z {status.dead_z}")
+
+
+@click.command()
+@click.argument("part", required=False)
+@follow_option
+def run(part: str | None, follow: bool) -> None:
+    """Cut PART (name or slot), or the selected part.
+
+    With --follow, Ctrl-C holds the run.
+
+    \b
+    Example: tornillo run test-bar --follow
+    """
+    with connected() as lathe:
+        slot = None if part is None else lathe.find(part).slot
+        lathe.run(slot)
+        _started(lathe, follow)
+
+
+@click.command()
+def hold() -> None:
+    """Stop the run so that it can go on.
+
+    \b
+    Example: tornillo hold
+    """
+    with connected() as lathe:
+        lathe.hold()
+    click.echo("held; go on with `tornillo resume`, give up with `tornillo stop`")
+
+
+@click.command()
+@follow_option
+def resume(follow: bool) -> None:
+    """Go on after a hold.
+
+    \b
+    Example: tornillo resume --follow
+    """
+    with connected() as lathe:
+        lathe.resume()
+        _started(lathe, follow)
+
+
+def _started(lathe: Lathe, follow: bool) -> None:
+    """Follow a run that was just started, if wanted."""
+    if follow:
+        follow_run(lathe)
+        click.echo("finished")
+    else:
+        click.echo("running; see `tornillo status`, hold with `tornillo hold`")
+
+
+@click.command()
+def stop() -> None:
+    """End the run or the homing.
+
+    \b
+    Example: tornillo stop
+    """
+    with connected() as lathe:
+        lathe.stop()
+    click.echo("stopped")
+
+
+@click.command()
+def reset() -> None:
+    """Acknowledge an alarm.
+
+    \b
+    Example: tornillo reset
+    """
+    with connected() as lathe:
+        lathe.reset()
+        status = lathe.status()
+    if status.state is State.ALARM:
+        raise status.alarm_error()
+    click.echo("no alarm" if status.homed else "no alarm; home next: `tornillo home`")
+
+
+@click.command()
+@json_option
+def status(as_json: bool) -> None:
+    """Show what the lathe is doing and where the tool is.
+
+    \b
+    Example: tornillo status --json
+    """
+    with connected() as lathe:
+        now = lathe.status()
+        names = {part.slot: part.name for part in lathe.parts()}
+        if as_json:
+            print_json(_as_json(lathe, now, names))
+            return
+        rows = _as_rows(lathe, now, names)
+    width = max(len(name) for name in rows)
+    for name, value in rows.items():
+        click.echo(f"{name:<{width}}  {value}")
+
+
+def _position_mm(lathe: Lathe, now: Status) -> tuple[float, float]:
+    """Diameter and z of the tool from part zero, in mm."""
+    hello = lathe.hello
+    radius = (now.x - hello.zero_x) * hello.step_x_nm / NM_PER_MM
+    return 2 * radius, (now.z - hello.zero_z) * hello.step_z_nm / NM_PER_MM
+
+
+def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, object]:
+    """Everything known, for scripts."""
+    diameter, z = _position_mm(lathe, now)
+    values = dataclasses.asdict(now)
+    values["state"] = now.state.name
+    values["alarm"] = now.alarm.name
+    values["alarm_axis"] = None if now.alarm_axis is None else now.alarm_axis.name
+    values["reset_cause"] = now.reset_cause.name
+    values["flags"] = [flag.name for flag in now.flags]
+    return {
+        **values,
+        "homed": now.homed,
+        "finished": now.finished,
+        "part": names.get(-1 if now.slot is None else now.slot),
+        "part_diameter_mm": round(diameter, 4),
+        "part_z_mm": round(z, 4),
+        "firmware": lathe.firmware,
+        "serial_number": lathe.serial_number,
+    }
+
+
+def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]:
+    """What a person wants to know."""
+    rows = {"state": now.state.name.lower()}
+    if now.state is State.ALARM:
+        rows["alarm"] = f"{now.alarm_error()}; {ALARM_TEXTS[now.alarm].remedy}"
+    if now.homed:
+        diameter, z = _position_mm(lathe, now)
+        rows["tool"] = f"diameter {diameter:.3f} mm, z {z:.3f} mm"
+    else:
+        rows["tool"] = "unknown: not homed"
+    rows["machine"] = f"X {now.x}, Z {now.z} steps"
+    rows["dead steps"] = f"X {now.dead_x}, Z {now.dead_z}"
+    if now.slot is not None:
+        rows["part"] = f"{names.get(now.slot, '?')} (slot {now.slot})"
+    if now.state in (State.RUNNING, State.HOLD):
+        rows["progress"] = (
+            f"{now.permille / 10:.1f} %, operation {now.operation} of {now.operations}, "
+            f"pass {now.pass_number} of {now.passes}"
+        )
+    pressed = [
+        text
+        for flag, text in (
+            (StatusFlag.ESTOP, "emergency stop"),
+            (StatusFlag.SWITCH_X, f"limit switch {Axis.X.name}"),
+            (StatusFlag.SWITCH_Z, f"limit switch {Axis.Z.name}"),
+            (StatusFlag.BUTTON_RUN, "RUN"),
+            (StatusFlag.BUTTON_HOLD, "HOLD"),
+            (StatusFlag.BUTTON_STOP, "STOP"),
+        )
+        if flag in now.flags
+    ]
+    if pressed:
+        rows["pressed"] = ", ".join(pressed)
+    rows["firmware"] = f"{lathe.firmware}, serial number {lathe.serial_number}"
+    rows["last start"] = now.reset_cause.name.lower().replace("_", "-")
+    return rows
+
+
+VERBS = (home, run, hold, resume, stop, reset, status)

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Verbs that change what the chip remembers about the machine: settings, zero."""
+
+import difflib
+import math
+
+import click
+
+from tornillo.commands.connection import connected, json_option, print_json, print_table
+from tornillo.errors import TornilloError
+from tornillo.protocol import SETTINGS, Axis, Setting
+from tornillo.units import NM_PER_UNIT, Scale
+
+units_option = click.option(
+    "--units",
+    type=click.Choice(list(NM_PER_UNIT)),
+    default="mm",
+    show_default=True,
+    help="Units of the position.",
+)
+
+
+@click.group(invoke_without_command=True)
+@json_option
+@click.pass_context
+def settings(context: click.Context, as_json: bool) -> None:
+    """List the settings of the lathe, or get or set one.
+
+    \b
+    Examples: tornillo settings
+              tornillo settings get zero_z
+              tornillo settings set rapid_rate_x 900
+    """
+    if context.invoked_subcommand is not None:
+        return
+    with connected() as lathe:
+        found = lathe.settings()
+    rows = [
+        {
+            "name": entry.id.name.lower(),
+            "value": data.value,
+            "unit": entry.unit,
+            "minimum": data.minimum,
+            "maximum": data.maximum,
+            "meaning": entry.meaning,
+        }
+        for entry, data in found
+    ]
+    if as_json:
+        print_json(rows)
+    else:
+        print_table(rows)
+
+
+@settings.command("get")
+@click.argument("name")
+def get_setting(name: str) -> None:
+    """Print the value of NAME alone."""
+    entry = _named(name)
+    with connected() as lathe:
+        click.echo(lathe.setting(entry.id).value)
+
+
+@settings.command("set", context_settings={"ignore_unknown_options": True})
+@click.argument("name")
+@click.argument("value", type=int)
+def set_setting(name: str, value: int) -> None:
+    """Change NAME to VALUE and store it in the lathe."""
+    entry = _named(name)
+    with connected() as lathe:
+        now = lathe.setting(entry.id)
+        if not now.minimum <= value <= now.maximum:
+            raise TornilloError(
+                f"{name} cannot be {value}: it goes from {now.minimum} to {now.maximum} "
+                f"{entry.unit}".rstrip(),
+                f"choose a value in this range; now it is {now.value}",
+            )
+        lathe.set_setting(entry.id, value)
+    click.echo(f"{name} was {now.value}, is {value} {entry.unit}".rstrip())
+
+
+def _named(name: str) -> Setting:
+    """The setting called `name`; raises TornilloError with the nearest name."""
+    known = {entry.id.name.lower(): entry for entry in SETTINGS}
+    if name.lower() not in known:
+        close = difflib.get_close_matches(name.lower(), known, n=1)
+        remedy = f'did you mean "{close[0]}"?' if close else "see `tornillo settings`"
+        raise TornilloError(f'there is no setting "{name}"', remedy)
+    return known[name.lower()]
+
+
+@click.group()
+def zero() -> None:
+    """Tell the lathe where the tool stands, in part coordinates.
+
+    Touch the work with the tool first. The part zero is stored in the lathe.
+
+    \b
+    Examples: tornillo zero x --diameter 25.4
+              tornillo zero z --at 0 --units inch
+    """
+
+
+def _finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
+    """Refuse nan and inf."""
+    if not math.isfinite(value):
+        raise click.BadParameter("must be an ordinary number")
+    return value
+
+
+@zero.command("x")
+@click.option(
+    "--diameter",
+    type=click.FloatRange(min=0),
+    required=True,
+    callback=_finite,
+    help="Diameter that the tool touches.",
+)
+@units_option
+def zero_x(diameter: float, units: str) -> None:
+    """The tool touches this diameter."""
+    with connected() as lathe:
+        scale = Scale(units, lathe.machine())
+        lathe.zero(Axis.X, scale.radius_steps(diameter))
+    click.echo(f"X: the tool stands at diameter {scale.show(diameter)}")
+
+
+@zero.command("z")
+@click.option("--at", type=float, required=True, callback=_finite, help="z where the tool stands.")
+@units_option
+def zero_z(at: float, units: str) -> None:
+    """The tool stands at this z; 0 is the finished front face."""
+    with connected() as lathe:
+        scale = Scale(units, lathe.machine())
+        lathe.zero(Axis.Z, scale.z_steps(at))
+    click.echo(f"Z: the tool stands at z = {scale.show(at)}")
+
+
+VERBS = (settings, zero)

@@ -18,7 +18,8 @@ RIGHT = {"15": "LED_STATUS", "16": "SPARE_RC1", "17": "SPINDLE_INDEX", "23": "US
 def draw() -> Sheet:
     """Return the sheet."""
     sheet = Sheet("controller", "Controller and USB", "A3", 2,
-                  "PIC18F4550, 20 MHz crystal, USB with ESD protection, VBUS sense")
+                  "PIC18F4550, 20 MHz crystal, USB with ESD protection, VBUS sense",
+                  "PIC18F4550, 20 MHz, USB, VBUS sense\nR1-R8, C1-C8, D1, Q1, Q2, J1, Y1")
     sheet.place("U1", "MCU_Microchip_PIC18:PIC18F4550-IP", "PIC18F4550-I/P", (165, 90),
                 footprint=fp.DIP40, ref_at=(8, -27.5, "left"), value_at=(8, 27.5, "left"))
     for pin, net in LEFT.items():
@@ -58,7 +59,7 @@ def _supply(sheet: Sheet) -> None:
 
 
 def _clock(sheet: Sheet) -> None:
-    sheet.place("Y1", "Device:Crystal", "20 MHz CL 18pF", (112, 82), rot=270,
+    sheet.place("Y1", "Device:Crystal", "20MHz 18pF", (112, 82), rot=270,
                 footprint=fp.CRYSTAL, ref_at=(3, -1, "left"), value_at=(3, 1, "left"))
     sheet.place("C1", "Device:C", "22p", (100, 79), rot=90, footprint=fp.CERAMIC,
                 ref_at=(-2.6, -2.6, "left"), value_at=(0.4, -2.6, "left"))
@@ -67,8 +68,8 @@ def _clock(sheet: Sheet) -> None:
     sheet.wire("U1.13", (128, 84), (128, 85), (112, 85), "C2.2")
     sheet.wire("C1.1", (94, 79), (94, 85), "C2.1")
     ground(sheet, "GND", (94, 85))
-    sheet.label("OSC2", (119, 79))
-    sheet.label("OSC1", (119, 85))
+    sheet.label("OSC2", (121, 79))
+    sheet.label("OSC1", (121, 85))
 
 
 def _usb(sheet: Sheet) -> None:
@@ -147,4 +148,4 @@ def _status(sheet: Sheet) -> None:
     sheet.label("VUSB", (196, 84))
     sheet.place("TP3", "Connector:TestPoint", "VUSB", (220, 84), footprint=fp.TEST_POINT,
                 ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
-    sheet.text("VUSB: the chip's 3.3 V for the USB pins;\nnothing else may draw from it.", (226, 90))
+    sheet.text("VUSB: the chip's 3.3 V for the USB pins;\nnothing else may draw from it.", (232, 90))

@@ -9,7 +9,8 @@ from design.sheet import Sheet
 def draw() -> Sheet:
     """Return the sheet."""
     sheet = Sheet("machine", "Inputs and outputs", "A3", 5,
-                  "Everything that comes from the machine crosses the isolation gap")
+                  "Everything that comes from the machine crosses the isolation gap",
+                  "Limit switches, spindle index, contact\nsensor, spindle and coolant outputs")
     network(sheet, "RN5", "10k", (126, 26))
     supply(sheet, "+5V", "RN5.1", 1)
     _limits(sheet)
@@ -38,7 +39,7 @@ def _switch(sheet: Sheet, net: str, row: int, numbers: tuple[str, str, str, str]
     sheet.wire(f"{cap}.1", (58, row))
     ground(sheet, "MGND", f"{cap}.2", 1)
     sheet.place(ref, "74xx:74HC14", "74HC14", (74, row), unit=gate_unit, footprint=fp.DIP14,
-                ref_at=(-2, -2.6, "left"), value_at=(-2, 2.8, "left"))
+                ref_at=(-2.4, -3.2, "left"), value_at=(-2, 3.2, "left"))
     sheet.wire((58, row), f"{ref}.{gate_in}")
     resistor(sheet, light, "1k", (90, row), across=True)
     sheet.wire(f"{ref}.{gate_out}", f"{light}.1")

@@ -14,7 +14,8 @@ ROW = 16
 def draw() -> Sheet:
     """Return the sheet."""
     sheet = Sheet("motor", "Motor drive", "A3", 4,
-                  "Opto-coupler, Schmitt gate, MOSFET, diode to a common clamp")
+                  "Opto-coupler, Schmitt gate, MOSFET, diode to a common clamp",
+                  "Two unipolar motors, eight windings,\nopto-coupler to MOSFET and clamp")
     _axis(sheet, "Z", 40, first=20, opto="U6", gate="U8", terminal_ref="J5", clamp="D41",
           networks=("RN1", "RN2"))
     _axis(sheet, "X", 138, first=30, opto="U7", gate="U9", terminal_ref="J6", clamp="D42",
@@ -66,20 +67,20 @@ def _channel(sheet: Sheet, axis: str, index: int, row: int, number: int, opto: s
     sheet.wire(emitter, sheet.off(emitter, 3, 0))
     ground(sheet, "MGND", sheet.off(emitter, 3, 0), 1)
     sheet.place(gate, "74xx:74HC14", "74HC14", (106, row), unit=phase, footprint=fp.DIP14,
-                ref_at=(-2, -2.6, "left"), value_at=(-2, 2.8, "left"))
+                ref_at=(-2.4, -3.2, "left"), value_at=(-2, 3.2, "left"))
     sheet.wire(collector, f"{gate}.{GATE_PINS[index][0]}")
     sheet.label(f"{axis}{phase}_OFF", (90, row))
-    resistor(sheet, f"R{number + 20}", "470", (122, row), across=True)
-    sheet.wire(f"{gate}.{GATE_PINS[index][1]}", f"R{number + 20}.1")
+    resistor(sheet, f"R{number + 60}", "470", (122, row), across=True)
+    sheet.wire(f"{gate}.{GATE_PINS[index][1]}", f"R{number + 60}.1")
     transistor = f"Q{(number // 10 - 1) * 10 + phase}"
     sheet.place(transistor, "Transistor_FET:IRLZ44N", "IRLZ44N", (150, row), footprint=fp.TO220)
-    sheet.wire(f"R{number + 20}.2", f"{transistor}.1")
+    sheet.wire(f"R{number + 60}.2", f"{transistor}.1")
     sheet.label(f"GATE_{axis}{phase}", (139, row))
     ground(sheet, "MGND", f"{transistor}.3", 1)
-    diode(sheet, f"D{number + 30}", "UF4004", (168, row - 8), cathode="right",
+    diode(sheet, f"D{number + 50}", "UF4004", (168, row - 8), cathode="right",
           footprint=fp.DIODE_1A)
-    sheet.wire(f"{transistor}.2", (162, row - 4), (162, row - 8), f"D{number + 30}.2")
-    sheet.wire(f"D{number + 30}.1", (176, row - 8))
+    sheet.wire(f"{transistor}.2", (162, row - 4), (162, row - 8), f"D{number + 50}.2")
+    sheet.wire(f"D{number + 50}.1", (176, row - 8))
 
 
 def _terminal(sheet: Sheet, axis: str, top: int, rows: list[int], ref: str) -> None:
@@ -102,14 +103,14 @@ def _gate_supply(sheet: Sheet) -> None:
     for index, (gate, cap) in enumerate((("U8", "C18"), ("U9", "C19"))):
         x = 246 + 40 * index
         sheet.place(gate, "74xx:74HC14", "74HC14", (x, 42), unit=7, footprint=fp.DIP14,
-                    ref_at=(-3, -1, "left"), value_at=(-3, 1, "left"))
+                    ref_at=(-8, -1, "left"), value_at=(-11, 1, "left"))
         supply(sheet, "+5VM", f"{gate}.14", 2)
         ground(sheet, "MGND", f"{gate}.7", 2)
         capacitor(sheet, cap, "100n", (x + 14, 42))
         sheet.wire(f"{cap}.1", (x + 14, 31), (x, 31))
         sheet.wire(f"{cap}.2", (x + 14, 53), (x, 53))
     sheet.place("U9", "74xx:74HC14", "74HC14", (262, 80), unit=6, footprint=fp.DIP14,
-                ref_at=(-2, -2.6, "left"), value_at=(-2, 2.8, "left"))
+                ref_at=(-2.4, -3.2, "left"), value_at=(-2, 3.2, "left"))
     sheet.wire("U9.13", (250, 80))
     ground(sheet, "MGND", (250, 80))
     sheet.nc("U9.12")

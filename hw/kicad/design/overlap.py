@@ -34,7 +34,7 @@ def overlaps(sheet: Sheet) -> list[str]:
             found += [f"{sheet.name}: {text.words!r} lies on the wire {a} {b}"
                       for a, b in split_wires(sheet)[0] if _meet(text.box, _flat(a, b))]
             found += [f"{sheet.name}: {text.words!r} lies on {part.ref}" for part in sheet.parts
-                      if part.ref not in text.words.split("/") and _meet(text.box, part.body())]
+                      if _meet(text.box, part.body())]
     return found
 
 
@@ -65,7 +65,7 @@ def _texts(sheet: Sheet) -> list[Text]:
     for kind, net, (x, y), rot, _ in sheet.labels:
         width = len(net) * CHARACTER
         if kind == "global_label":
-            width += 2.0
+            width = len(net) * 1.0 + 2.0
         left = x if rot == 0 else x - width
         if rot in (90, 270):
             texts.append(Text(net, (x - 1.4, y - width, x - 0.2, y), True))

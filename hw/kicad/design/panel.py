@@ -16,7 +16,8 @@ LCD_PINS = {"4": "LCD_RS", "6": "LCD_E", "11": "LCD_D4", "12": "LCD_D5", "13": "
 
 def draw() -> Sheet:
     """Return the sheet."""
-    sheet = Sheet("panel", "Panel", "A4", 6, "Buttons and keys to ground; LCD HD44780, 4 bits")
+    sheet = Sheet("panel", "Panel", "A4", 6, "Buttons and keys to ground; LCD HD44780, 4 bits",
+                  "Run, hold, stop, five keys, LCD")
     _buttons(sheet)
     _ladder(sheet)
     _connector(sheet)

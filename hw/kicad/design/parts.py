@@ -67,6 +67,7 @@ def supply(sheet: Sheet, net: str, pin: Point | str, rise: int = 2) -> None:
 def terminal(sheet: Sheet, ref: str, value: str, ways: int, at: Point, *,
              mirrored: bool = False) -> Part:
     """Place a screw terminal; mirrored has its wires on the right."""
+    top = {2: -1, 3: -3, 4: -3, 6: -5}[ways]
     return sheet.place(ref, f"Connector:Screw_Terminal_01x0{ways}", value, at,
                        mirror="y" if mirrored else "", footprint=fp.SCREW.format(ways),
-                       ref_at=(-2, -ways - 1.6, "left"), value_at=(-2, -ways, "left"))
+                       ref_at=(-2, top - 2.8, "left"), value_at=(-2, top - 1.2, "left"))

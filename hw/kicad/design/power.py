@@ -10,7 +10,8 @@ from design.sheet import Sheet
 def draw() -> Sheet:
     """Return the sheet."""
     sheet = Sheet("power", "Power", "A4", 3,
-                  "Fuse, reverse polarity, emergency stop, isolated logic supply")
+                  "Fuse, reverse polarity, emergency stop, isolated logic supply",
+                  "5 to 12 V in: fuse, reverse polarity,\nemergency stop, 5 V for both sides")
     _input(sheet)
     _estop(sheet)
     _regulator(sheet)
@@ -20,12 +21,12 @@ def draw() -> Sheet:
 
 
 def _input(sheet: Sheet) -> None:
-    sheet.frame((8, 12), (110, 76))
-    sheet.text("Supply 5 to 12 V: fuse, reverse polarity (Q4), surge (D4)", (10, 16), 1.5)
-    terminal(sheet, "J2", "SUPPLY", 2, (14, 30), mirrored=True)
-    sheet.place("F2", "Device:Fuse", "T5A", (27, 30), rot=90, footprint=fp.FUSE_5X20)
+    sheet.frame((10, 12), (110, 76))
+    sheet.text("Supply 5 to 12 V: fuse, reverse polarity (Q4), surge (D4)", (12, 16), 1.5)
+    terminal(sheet, "J2", "SUPPLY", 2, (15, 30), mirrored=True)
+    sheet.place("F2", "Device:Fuse", "T5A", (28, 30), rot=90, footprint=fp.FUSE_5X20)
     sheet.wire("J2.1", "F2.1")
-    sheet.wire("J2.2", (20, 32), (20, 64), (36, 64))
+    sheet.wire("J2.2", (22, 32), (22, 64), (36, 64))
     sheet.label("SUPPLY_N", (24, 64))
     sheet.place("Q4", "Transistor_FET:IRLZ44N", "IRLZ44N", (40, 62), rot=90, mirror="x",
                 footprint=fp.TO220, ref_at=(-4, 4.2, "left"), value_at=(0.5, 4.2, "left"))
@@ -56,7 +57,7 @@ def _input(sheet: Sheet) -> None:
 
 
 def _estop(sheet: Sheet) -> None:
-    sheet.frame((112, 12), (226, 76))
+    sheet.frame((112, 12), (224, 76))
     sheet.text("Emergency stop: the contact carries the motor current", (114, 16), 1.5)
     terminal(sheet, "J3", "E-STOP", 2, (126, 30))
     sheet.wire((116, 30), "J3.1")
@@ -84,8 +85,8 @@ def _estop(sheet: Sheet) -> None:
 
 
 def _regulator(sheet: Sheet) -> None:
-    sheet.frame((8, 80), (84, 116))
-    sheet.text("5 V of the machine side", (10, 84), 1.5)
+    sheet.frame((10, 80), (84, 116))
+    sheet.text("5 V of the machine side", (12, 84), 1.5)
     sheet.place("U3", "tornillo:LDO_5V_TO220", "LM2940CT-5.0", (40, 96), footprint=fp.TO220,
                 ref_at=(-4, -3.4, "left"), value_at=(2, 5.4, "left"))
     sheet.to_sheet("VFUSE", (20, 96), 180)
@@ -104,7 +105,7 @@ def _regulator(sheet: Sheet) -> None:
 
 
 def _isolated(sheet: Sheet) -> None:
-    sheet.frame((86, 80), (226, 124))
+    sheet.frame((86, 80), (224, 124))
     sheet.text("Logic supply across the isolation gap; power path to USB", (88, 84), 1.5)
     sheet.place("U4", "tornillo:DCDC_5V_5V_SIP7", "TMV0505S", (116, 98), footprint=fp.DCDC,
                 ref_at=(-6, -5.2, "left"), value_at=(-6, 5.4, "left"))
@@ -138,8 +139,8 @@ def _isolated(sheet: Sheet) -> None:
 
 
 def _estop_sense(sheet: Sheet) -> None:
-    sheet.frame((8, 120), (84, 156))
-    sheet.text("Emergency-stop sense: dark = stopped, or wire broken", (10, 124), 1.5)
+    sheet.frame((10, 120), (84, 156))
+    sheet.text("Emergency-stop sense: dark = stopped, or wire broken", (12, 124), 1.5)
     sheet.place("U5", "Isolator:LTV-817", "LTV-817", (50, 140), footprint=fp.DIP4)
     resistor(sheet, "R13", "1k", (30, 138), across=True)
     sheet.wire("R13.2", "U5.1")

@@ -86,6 +86,7 @@ class Sheet:
     paper: str
     page: int
     comment: str
+    summary: str
     parts: list[Part] = field(default_factory=list)
     segments: list[tuple[Point, Point]] = field(default_factory=list)
     labels: list[tuple[str, str, Point, int, str]] = field(default_factory=list)
@@ -204,7 +205,9 @@ def text_places(part: Part) -> list[tuple[str, str, float, float, str]]:
     x, y = part.at
     pins = [pin for pin in part.symbol.pins if pin.unit in (0, part.unit)]
     tall = bottom - top > right - left
-    if len(pins) == 2:
+    if len(pins) == 3 and part.rot == 0:
+        tall = True
+    elif len(pins) == 2:
         tall = part.pin(pins[0].number)[0] == part.pin(pins[1].number)[0]
     if len(pins) <= 3 and tall:
         ref = (right + 0.8 - x, (top + bottom) / 2 - y - 1, "left")

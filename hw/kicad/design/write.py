@@ -123,7 +123,7 @@ def _property(part: Part, name: str, text: str, shown: tuple[str, float, float, 
     if flips and justify in ("left", "right"):
         justify = "right" if justify == "left" else "left"
     angle = 90 if part.rot in (90, 270) else 0
-    if part.rot == 270 and justify in ("left", "right"):
+    if part.rot == 90 and justify in ("left", "right"):
         justify = "right" if justify == "left" else "left"
     return [Atom("property"), name, text, [Atom("at"), mm(x), mm(y), Atom(str(angle))],
             effects(1.27, (justify,))]
@@ -133,17 +133,20 @@ def root_text(sheets: list[Sheet], notes: list[tuple[str, tuple[int, int], float
     """Return the text of the root sheet: one box per sheet, and the notes."""
     body = _head(ROOT_UUID, "A4", "Tornillo control board", "Overview: one sheet per function")
     body.append([Atom("lib_symbols")])
-    for words, at, size in notes:
-        body.append([Atom("text"), words, [Atom("exclude_from_sim"), Atom("no")],
-                     [Atom("at"), mm(at[0]), mm(at[1]), Atom("0")],
-                     effects(size, ("left", "bottom")),
-                     [Atom("uuid"), name_uuid("root", "text", at)]])
+    body += [_note(words, at, size) for words, at, size in notes]
     for index, sheet in enumerate(sheets):
         x, y = 20 + 68 * (index % 3), 50 + 36 * (index // 3)
         body.append(_sheet_box(sheet, x, y))
+        body.append(_note(sheet.summary, (x + 2, y + 12)))
     body.append([Atom("sheet_instances"),
                  [Atom("path"), "/", [Atom("page"), "1"]]])
     return dump(body) + "\n"
+
+
+def _note(words: str, at: tuple[int, int], size: float = 1.4) -> list[Any]:
+    return [Atom("text"), words, [Atom("exclude_from_sim"), Atom("no")],
+            [Atom("at"), mm(at[0]), mm(at[1]), Atom("0")], effects(size, ("left", "bottom")),
+            [Atom("uuid"), name_uuid("root", "text", at)]]
 
 
 def _sheet_box(sheet: Sheet, x: int, y: int) -> list[Any]:

@@ -38,8 +38,9 @@
 #define NAME_LENGTH                         16
 /* characters of the serial number */
 #define SERIAL_LENGTH                       8
-/* steps, largest length or radius in a part image */
-#define POSITION_MAX                        200000L
+/* steps, largest length or radius in a part image: the chip counts in 16
+ * bits */
+#define POSITION_MAX                        32000
 /* 1/256 step/s, slowest feed: 4 step/s */
 #define FEED_MIN                            1024
 /* feed units of one step/s */
@@ -161,11 +162,11 @@
 #define RUN_REQUEST_SIZE                    1
 #define RUN_RESPONSE_SIZE                   1
 #define RUN_SLOT_AT                         0
-/* Stop the run so that it can go on. */
+/* Stop the run so that it can go on. OK too when it is already held. */
 #define COMMAND_HOLD                        0x05
 #define HOLD_REQUEST_SIZE                   0
 #define HOLD_RESPONSE_SIZE                  1
-/* Go on after HOLD. */
+/* Go on after HOLD. OK too when it already runs. */
 #define COMMAND_RESUME                      0x06
 #define RESUME_REQUEST_SIZE                 0
 #define RESUME_RESPONSE_SIZE                1
@@ -174,7 +175,7 @@
 #define COMMAND_STOP                        0x07
 #define STOP_REQUEST_SIZE                   0
 #define STOP_RESPONSE_SIZE                  1
-/* Acknowledge an alarm. */
+/* Acknowledge an alarm. The machine is then IDLE. */
 #define COMMAND_RESET                       0x08
 #define RESET_REQUEST_SIZE                  0
 #define RESET_RESPONSE_SIZE                 1
@@ -184,20 +185,24 @@
 #define ZERO_RESPONSE_SIZE                  1
 #define ZERO_AXIS_AT                        0
 #define ZERO_VALUE_AT                       1
-/* Start to receive a part image; an upload under way is forgotten. */
+/* Start to receive a part image; an upload under way is forgotten.
+ * OUT_OF_RANGE: length is not 56 to 960. */
 #define COMMAND_UPLOAD_BEGIN                0x10
 #define UPLOAD_BEGIN_REQUEST_SIZE           4
 #define UPLOAD_BEGIN_RESPONSE_SIZE          1
 #define UPLOAD_BEGIN_LENGTH_AT              0
 #define UPLOAD_BEGIN_CRC_AT                 2
-/* One piece of the image. */
+/* One piece of the image, in order. BAD_OFFSET: not the next piece, or not
+ * 32 bytes and not the last. */
 #define COMMAND_UPLOAD_DATA                 0x11
 #define UPLOAD_DATA_REQUEST_MIN             3
 #define UPLOAD_DATA_REQUEST_MAX             34
 #define UPLOAD_DATA_RESPONSE_SIZE           1
 #define UPLOAD_DATA_OFFSET_AT               0
 #define UPLOAD_DATA_DATA_AT                 2
-/* Check the whole image and make it a part. */
+/* Check the whole image and make it a part, which is then selected.
+ * INVALID_PART is followed by reason u8 and operation u8. BAD_LENGTH:
+ * pieces are missing. */
 #define COMMAND_UPLOAD_COMMIT               0x12
 #define UPLOAD_COMMIT_REQUEST_SIZE          0
 #define UPLOAD_COMMIT_RESPONSE_SIZE         4
@@ -215,7 +220,7 @@
 #define PART_INFO_RESPONSE_CRC_AT           7
 #define PART_INFO_RESPONSE_OPERATIONS_AT    9
 #define PART_INFO_RESPONSE_NAME_AT          10
-/* Read a stored image. */
+/* Read a stored image. BAD_OFFSET: behind the end, or no multiple of 32. */
 #define COMMAND_PART_READ                   0x14
 #define PART_READ_REQUEST_SIZE              3
 #define PART_READ_RESPONSE_MIN              2
@@ -289,22 +294,23 @@
 
 /* Why a part is refused. The first broken rule is answered. First for the
  * whole part (operation 0): LENGTH, FORMAT, NAME, STEP_SIZE, STOCK,
- * DEPTH_OF_CUT, ALLOWANCE, FEED, RETRACT, OPERATION_COUNT, OUTSIDE_TRAVEL.
+ * OPERATION_COUNT, DEPTH_OF_CUT, ALLOWANCE, FEED, RETRACT, OUTSIDE_TRAVEL.
  * Then for each operation in turn: LENGTH, OPERATION_TYPE, OPERATION_SIZE,
- * FORMAT, OUTSIDE_STOCK, EMPTY_CUT, OUTSIDE_TRAVEL, BLOCKED. After the last
+ * FORMAT, OUTSIDE_STOCK, OUTSIDE_TRAVEL, EMPTY_CUT, BLOCKED. After the last
  * one (operation 0): LENGTH. */
 /* format is not 1, or a byte or flag that must be 0 is not */
 #define REFUSAL_FORMAT                      1
-/* shorter than its header, longer than 960 bytes, a record reaches behind
- * the end of the image, or bytes are left after the last record */
+/* shorter than its header, longer than 960 bytes, fewer than 12 bytes left
+ * for a record, a record that reaches behind the end, or bytes left after
+ * the last record */
 #define REFUSAL_LENGTH                      2
 /* empty, a character other than a-z 0-9 -, or characters after the first
  * zero */
 #define REFUSAL_NAME                        3
 /* step_x_nm or step_z_nm differs from the setting */
 #define REFUSAL_STEP_SIZE                   4
-/* stock_radius or stock_length is not 1 to 200000, or stock_front is not 0
- * to 200000 */
+/* stock_radius or stock_length is not 1 to 32000, or stock_front is not 0
+ * to 32000 */
 #define REFUSAL_STOCK                       5
 /* depth_of_cut is 0 or more than stock_radius */
 #define REFUSAL_DEPTH_OF_CUT                6
@@ -319,7 +325,7 @@
 /* size is not that of its type */
 #define REFUSAL_OPERATION_SIZE              11
 /* x below 0 or above stock_radius, z_start above stock_front, or z or z_end
- * below retract - stock_length */
+ * below retract - stock_length or above 32000 */
 #define REFUSAL_OUTSIDE_STOCK               12
 /* whole part: zero_x + stock_radius + retract above 0, or zero_z +
  * stock_front + retract above 0; operation: zero_x + x below -travel_x, or
@@ -360,14 +366,14 @@
 
 /* SETTINGS(X): X(id, name, default, min, max) for each, in order of id. */
 #define SETTINGS(X)                                                          \
-    X(0, STEP_X_NM, 7112, 100, 100000L)                                      \
-    X(1, STEP_Z_NM, 7112, 100, 100000L)                                      \
-    X(2, TRAVEL_X, 3575, 100, 200000L)                                       \
-    X(3, TRAVEL_Z, 16072, 100, 200000L)                                      \
-    X(4, ZERO_X, (-3575), (-200000L), 0)                                     \
-    X(5, ZERO_Z, (-8000), (-200000L), 0)                                     \
+    X(0, STEP_X_NM, 7112, 100, 32000)                                        \
+    X(1, STEP_Z_NM, 7112, 100, 32000)                                        \
+    X(2, TRAVEL_X, 3575, 100, 32000)                                         \
+    X(3, TRAVEL_Z, 16072, 100, 32000)                                        \
+    X(4, ZERO_X, (-3575), (-32000), 0)                                       \
+    X(5, ZERO_Z, (-8000), (-32000), 0)                                       \
     X(6, HOME_RATE, 800, 20, 4000)                                           \
-    X(7, LATCH_RATE, 200, 20, 4000)                                          \
+    X(7, LATCH_RATE, 100, 20, 100)                                           \
     X(8, RAPID_RATE_X, 1000, 20, 4000)                                       \
     X(9, RAPID_RATE_Z, 1000, 20, 4000)                                       \
     X(10, SWITCH_TRAVEL_X, 0, 0, 200)                                        \

@@ -128,7 +128,8 @@ def layouts(model: Model) -> list[str]:
     lines.append("}")
     for command in model.commands:
         if command.response.fields and not command.response.is_open:
-            lines += record(f"{camel(command.name)}Data", command.meaning, command.response)
+            purpose = f"Response data of {command.name.upper()}."
+            lines += record(f"{camel(command.name)}Data", purpose, command.response)
     lines += record("ImageHeader", "Header of a part image.", model.image_header)
     for name, part in model.operations.items():
         purpose = model.raw["operation"][name]["meaning"]

@@ -20,6 +20,7 @@ RECORDS: dict[OperationType, type[FaceRecord] | type[CylinderRecord]] = {
     OperationType.FACE: FaceRecord,
     OperationType.CYLINDER: CylinderRecord,
 }
+SMALLEST_RECORD = min(record.size for record in OPERATION_RECORDS.values())
 
 
 class ImageError(ValueError):
@@ -90,7 +91,7 @@ def unpack_header(data: bytes) -> ImageHeader:
 
 def unpack_operation(data: bytes, at: int, position: int) -> Operation:
     """The record at offset `at`, number `position` of the part; raises ImageError."""
-    if len(data) < at + RECORD_HEAD_SIZE:
+    if len(data) < at + SMALLEST_RECORD:
         raise ImageError(Refusal.LENGTH, position)
     code, size, flags, reserved = data[at : at + RECORD_HEAD_SIZE]
     try:

@@ -33,8 +33,8 @@ OPERATIONS_MAX = 48
 NAME_LENGTH = 16
 #: characters of the serial number
 SERIAL_LENGTH = 8
-#: steps, largest length or radius in a part image
-POSITION_MAX = 200000
+#: steps, largest length or radius in a part image: the chip counts in 16 bits
+POSITION_MAX = 32000
 #: 1/256 step/s, slowest feed: 4 step/s
 FEED_MIN = 1024
 #: feed units of one step/s
@@ -251,7 +251,7 @@ OPERATION_RECORDS = {
 
 
 class HelloData(NamedTuple):
-    """Who are you? Starts the sequence anew; always executed."""
+    """Response data of HELLO."""
 
     protocol: int
     firmware_major: int
@@ -270,7 +270,7 @@ class HelloData(NamedTuple):
 
 
 class StatusData(NamedTuple):
-    """Where is the tool, what is the machine doing?"""
+    """Response data of STATUS."""
 
     state: int
     alarm: int
@@ -293,14 +293,14 @@ class StatusData(NamedTuple):
 
 
 class UploadCommitData(NamedTuple):
-    """Check the whole image and make it a part."""
+    """Response data of UPLOAD_COMMIT."""
 
     slot: int
     crc: int
 
 
 class PartInfoData(NamedTuple):
-    """What is in a slot?"""
+    """Response data of PART_INFO."""
 
     present: int
     selected: int
@@ -312,7 +312,7 @@ class PartInfoData(NamedTuple):
 
 
 class SettingGetData(NamedTuple):
-    """Read a setting and its range."""
+    """Response data of SETTING_GET."""
 
     value: int
     minimum: int
@@ -367,14 +367,14 @@ class Setting(NamedTuple):
 
 
 SETTINGS = (
-    Setting(SettingId.STEP_X_NM, 7112, 100, 100000, "nm", "one step of X"),
-    Setting(SettingId.STEP_Z_NM, 7112, 100, 100000, "nm", "one step of Z"),
-    Setting(SettingId.TRAVEL_X, 3575, 100, 200000, "steps", "travel of X from its limit switch"),
-    Setting(SettingId.TRAVEL_Z, 16072, 100, 200000, "steps", "travel of Z from its limit switch"),
-    Setting(SettingId.ZERO_X, -3575, -200000, 0, "steps", "machine X of the spindle axis"),
-    Setting(SettingId.ZERO_Z, -8000, -200000, 0, "steps", "machine Z of the part's front face"),
+    Setting(SettingId.STEP_X_NM, 7112, 100, 32000, "nm", "one step of X"),
+    Setting(SettingId.STEP_Z_NM, 7112, 100, 32000, "nm", "one step of Z"),
+    Setting(SettingId.TRAVEL_X, 3575, 100, 32000, "steps", "travel of X from its limit switch"),
+    Setting(SettingId.TRAVEL_Z, 16072, 100, 32000, "steps", "travel of Z from its limit switch"),
+    Setting(SettingId.ZERO_X, -3575, -32000, 0, "steps", "machine X of the spindle axis"),
+    Setting(SettingId.ZERO_Z, -8000, -32000, 0, "steps", "machine Z of the part's front face"),
     Setting(SettingId.HOME_RATE, 800, 20, 4000, "step/s", "speed towards the limit switches"),
-    Setting(SettingId.LATCH_RATE, 200, 20, 4000, "step/s", "speed of the second, slow approach"),
+    Setting(SettingId.LATCH_RATE, 100, 20, 100, "step/s", "speed of the second, slow approach"),
     Setting(SettingId.RAPID_RATE_X, 1000, 20, 4000, "step/s", "rapid speed of X"),
     Setting(SettingId.RAPID_RATE_Z, 1000, 20, 4000, "step/s", "rapid speed of Z"),
     Setting(SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide way, switch X closed to open"),

@@ -70,7 +70,7 @@ ERROR_TEXTS = {
         "upload the part again; if it happens often, change the USB cable",
     ),
     ErrorCode.STORE_FULL: Explanation(
-        "all slots of the chip hold parts",
+        "the chip has no room for one more part",
         "free one with `tornillo delete PART`",
     ),
     ErrorCode.FLASH_FAILED: Explanation(

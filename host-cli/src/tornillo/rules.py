@@ -97,6 +97,8 @@ def _whole_part(header: ImageHeader, scale: Scale) -> Iterator[Violation]:
     if (header.step_x_nm, header.step_z_nm) != (machine.step_x_nm, machine.step_z_nm):
         yield broken(Refusal.STEP_SIZE, "", f"{header.step_x_nm} and {header.step_z_nm} nm")
     yield from (broken(Refusal.STOCK, *found) for found in _stock(header, scale))
+    if not 1 <= header.operation_count <= OPERATIONS_MAX:
+        yield broken(Refusal.OPERATION_COUNT, "operation", f"{header.operation_count} operations")
     if not 1 <= header.depth_of_cut <= min(header.stock_radius, FIELD_MAX):
         detail = f"{header.depth_of_cut} steps, the stock has {header.stock_radius}"
         yield broken(Refusal.DEPTH_OF_CUT, "cut.depth_of_cut", detail)
@@ -106,8 +108,6 @@ def _whole_part(header: ImageHeader, scale: Scale) -> Iterator[Violation]:
     yield from (broken(Refusal.FEED, *found) for found in _feeds(header, scale))
     if not 1 <= header.retract <= FIELD_MAX:
         yield broken(Refusal.RETRACT, "cut.retract", f"{header.retract} steps")
-    if not 1 <= header.operation_count <= OPERATIONS_MAX:
-        yield broken(Refusal.OPERATION_COUNT, "operation", f"{header.operation_count} operations")
     yield from (broken(Refusal.OUTSIDE_TRAVEL, *found) for found in _stock_travel(header, scale))
 
 
@@ -157,8 +157,8 @@ def _operation(
     earlier = image.operations[: position - 1]
     rules = (
         (Refusal.OUTSIDE_STOCK, _outside_stock(image.header, operation, scale)),
-        (Refusal.EMPTY_CUT, _empty_cut(image.header, operation, scale)),
         (Refusal.OUTSIDE_TRAVEL, _outside_travel(operation, scale)),
+        (Refusal.EMPTY_CUT, _empty_cut(image.header, operation, scale)),
         (Refusal.BLOCKED, _blocked(image.header, operation, earlier, scale)),
     )
     for refusal, found in rules:
@@ -189,6 +189,8 @@ def _outside_stock(
             f"starts at {scale.show_z(operation.z_start)}, "
             f"the stock begins at {scale.show_z(header.stock_front)}",
         )
+    if z > POSITION_MAX:
+        yield key, f"{scale.show_z(z)} is out of all reason"
     nearest = header.retract - header.stock_length
     if z < nearest:
         yield (

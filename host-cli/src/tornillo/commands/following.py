@@ -50,7 +50,7 @@ def follow_run(lathe: Lathe) -> None:
         raise status.alarm_error()
     if not status.finished:
         raise TornilloError(
-            f"the run was stopped after {status.permille / 10:.1f} %",
+            "the run was stopped before its end",
             "start it again from its beginning with `tornillo run`",
         )
 

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the tests of the host share: a scripted lathe, the command line, part texts."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+from scripted_chip import ScriptedChip, ScriptedPort
+
+from tornillo.cli import main
+from tornillo.lathe import Lathe
+from tornillo.machine import Machine
+
+EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
+Tornillo = Callable[..., Result]
+
+
+@pytest.fixture
+def chip() -> ScriptedChip:
+    """An idle, homed lathe without parts."""
+    return ScriptedChip()
+
+
+@pytest.fixture
+def port(chip: ScriptedChip) -> ScriptedPort:
+    """The port of `chip`."""
+    return ScriptedPort(chip)
+
+
+@pytest.fixture
+def lathe(port: ScriptedPort) -> Lathe:
+    """The library connected to `port`, with a short time-out."""
+    return Lathe(port, timeout_s=0.02)
+
+
+@pytest.fixture
+def machine() -> Machine:
+    """The machine file that comes with tornillo."""
+    return Machine.load()
+
+
+@pytest.fixture
+def tornillo(port: ScriptedPort, monkeypatch: pytest.MonkeyPatch) -> Tornillo:
+    """Run the command line; every port it opens is `port`."""
+    monkeypatch.setattr("tornillo.lathe.find_port", lambda: "scripted")
+    monkeypatch.setattr("tornillo.lathe.open_port", lambda _name: port)
+    monkeypatch.setattr("tornillo.commands.following.POLL_S", 0)
+
+    def run(*arguments: str | Path) -> Result:
+        return CliRunner().invoke(main, [str(argument) for argument in arguments])
+
+    return run
+
+
+@pytest.fixture
+def test_bar() -> Path:
+    """The part file of the paper's test bar."""
+    return EXAMPLES / "test-bar.toml"
+
+
+@pytest.fixture
+def stepped_pin() -> Path:
+    """The metric example."""
+    return EXAMPLES / "stepped-pin.toml"

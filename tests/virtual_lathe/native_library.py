@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Loads the shared library of the virtual lathe and declares its functions.
+
+The manual of every function is the C header ``native/virtual_lathe.h``; the table here repeats
+its signatures for ctypes and nothing else.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import (
+    POINTER,
+    Structure,
+    c_char_p,
+    c_double,
+    c_int,
+    c_int32,
+    c_int64,
+    c_uint,
+    c_uint8,
+    c_uint32,
+    c_uint64,
+)
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+LIBRARY_VARIABLE = "VIRTUAL_LATHE_LIBRARY"
+DEFAULT_LIBRARY = (
+    Path(__file__).resolve().parents[2] / "build" / "virtual_lathe" / "libvirtual_lathe.so"
+)
+
+
+class InterruptCostC(Structure):
+    """struct vl_interrupt_cost"""
+
+    _fields_ = [(name, c_uint64) for name in ("entries", "total", "best", "worst", "worst_at")]
+
+
+class RamWriteC(Structure):
+    """struct vl_ram_write"""
+
+    _fields_ = [("cycle", c_uint64), ("address", c_uint32), ("value", c_uint32), ("pc", c_uint32)]
+
+
+class PinChangeC(Structure):
+    """struct vl_pin_change"""
+
+    _fields_ = [("cycle", c_uint64), ("levels", c_uint64)]
+
+
+_BYTES = POINTER(c_uint8)
+_SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
+    "vl_load": (c_int, [c_char_p]),
+    "vl_run": (c_int, [c_uint64]),
+    "vl_cycle": (c_uint64, []),
+    "vl_program_counter": (c_uint, []),
+    "vl_peek": (c_uint, [c_uint]),
+    "vl_poke": (None, [c_uint, c_uint]),
+    "vl_read": (c_uint, [c_uint]),
+    "vl_write": (None, [c_uint, c_uint]),
+    "vl_set_break": (None, [c_uint, c_int]),
+    "vl_reset_chip": (c_int, [c_int]),
+    "vl_fill_ram": (None, [c_uint]),
+    "vl_resets": (c_int, [POINTER(c_uint64), POINTER(c_int), c_int]),
+    "vl_flash_read": (None, [c_uint, _BYTES, c_uint]),
+    "vl_flash_write": (None, [c_uint, _BYTES, c_uint]),
+    "vl_eeprom_read": (None, [_BYTES]),
+    "vl_eeprom_write": (None, [_BYTES]),
+    "vl_config_read": (None, [_BYTES]),
+    "vl_interrupts": (None, [c_int, POINTER(InterruptCostC)]),
+    "vl_stack_depth_max": (c_uint, []),
+    "vl_executed": (None, [_BYTES]),
+    "vl_clear_statistics": (None, []),
+    "vl_watch_writes": (c_int, [c_uint, c_uint]),
+    "vl_ram_writes": (c_int, [POINTER(RamWriteC), c_int]),
+    "vl_pin_drive": (c_int, [c_int, c_int]),
+    "vl_pin_drive_volts": (c_int, [c_int, c_double, c_double]),
+    "vl_pin_level": (c_int, [c_int]),
+    "vl_pin_levels": (c_uint64, []),
+    "vl_pin_log": (None, [c_uint64]),
+    "vl_pin_changes": (c_int, [POINTER(PinChangeC), c_int]),
+    "vl_vcd_open": (c_int, [c_char_p]),
+    "vl_vcd_close": (None, []),
+}
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """Return the shared library, loaded once per process.
+
+    The path is taken from the environment variable ``VIRTUAL_LATHE_LIBRARY`` or is
+    ``build/virtual_lathe/libvirtual_lathe.so`` in the checkout.
+
+    Raises:
+        FileNotFoundError: the library has not been built.
+    """
+    path = Path(os.environ.get(LIBRARY_VARIABLE, str(DEFAULT_LIBRARY)))
+    if not path.exists():
+        raise FileNotFoundError(f"{path} does not exist: build it with `make virtual-lathe-library`")
+    loaded = ctypes.CDLL(str(path))
+    for name, (result, arguments) in _SIGNATURES.items():
+        function = getattr(loaded, name)
+        function.restype = result
+        function.argtypes = arguments
+    return loaded

@@ -29,34 +29,30 @@ folded          res     1               ; x
 left            res     1
 
 ; ---- one byte ---------------------------------------------------------------
-; crc low at FSR1+1, high at +2, byte at +3. 31 cycles with CALL and RETURN.
-x       equ     FSR0H
-high_   equ     FSR0L
-
+; crc low at FSR1+1, high at +2, byte at +3. 29 cycles with CALL and RETURN. x
+; lives in FSR0L (FSR0H has only four bits).
 crc_code        code
 _crc16_update:
         movlw   3
-        movff   PLUSW1, x
+        movff   PLUSW1, FSR0L
         movlw   2
         movf    PLUSW1, W, ACCESS       ; crc high
-        xorwf   x, F, ACCESS
-        swapf   x, W, ACCESS
+        xorwf   FSR0L, F, ACCESS
+        swapf   FSR0L, W, ACCESS
         andlw   0x0F
-        xorwf   x, F, ACCESS            ; x is complete
+        xorwf   FSR0L, F, ACCESS        ; x is complete
 
-        swapf   x, W, ACCESS
+        movf    FSR0L, W, ACCESS
+        mullw   0x20
+        xorwf   PRODL, F, ACCESS        ; low byte of the result
+        swapf   FSR0L, W, ACCESS
         andlw   0xF0
-        movwf   high_, ACCESS           ; x << 12
+        xorwf   PRODH, F, ACCESS
         movlw   1
         movf    PLUSW1, W, ACCESS       ; crc low
-        xorwf   high_, F, ACCESS
-        movf    x, W, ACCESS
-        mullw   0x20
-        movf    PRODH, W, ACCESS
-        xorwf   high_, F, ACCESS
+        xorwf   PRODH, F, ACCESS        ; high byte of the result
         movf    PRODL, W, ACCESS
-        xorwf   x, W, ACCESS            ; low byte of the result
-        movff   high_, PRODL
+        movff   PRODH, PRODL
         return
 
 ; ---- a block ----------------------------------------------------------------

@@ -19,7 +19,7 @@
 #include "link/protocol.h" /* CRC16_INITIAL */
 
 /* The CRC of what `crc` covered, followed by `byte`. Main loop or low-priority
- * interrupt; it keeps no state. 31 cycles, 2.6 us, plus pushing the
+ * interrupt; it keeps no state. 29 cycles, 2.4 us, plus pushing the
  * arguments. */
 uint16_t crc16_update(uint16_t crc, uint8_t byte);
 

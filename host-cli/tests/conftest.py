@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the host share: a scripted lathe, the command line, part texts."""
 
-from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner, Result
+from console import Tornillo
+from hypothesis import settings
 from scripted_chip import ScriptedChip, ScriptedPort
 
 from tornillo.cli import main
@@ -13,7 +15,9 @@ from tornillo.lathe import Lathe
 from tornillo.machine import Machine
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-Tornillo = Callable[..., Result]
+
+settings.register_profile("tornillo", deadline=None)
+settings.load_profile("tornillo")
 
 
 @pytest.fixture
@@ -23,15 +27,17 @@ def chip() -> ScriptedChip:
 
 
 @pytest.fixture
-def port(chip: ScriptedChip) -> ScriptedPort:
-    """The port of `chip`."""
-    return ScriptedPort(chip)
+def port(chip: ScriptedChip, monkeypatch: pytest.MonkeyPatch) -> ScriptedPort:
+    """The port of `chip`, whose clock is the one of the link."""
+    port = ScriptedPort(chip)
+    monkeypatch.setattr("tornillo.link.time", SimpleNamespace(monotonic=lambda: port.now))
+    return port
 
 
 @pytest.fixture
 def lathe(port: ScriptedPort) -> Lathe:
-    """The library connected to `port`, with a short time-out."""
-    return Lathe(port, timeout_s=0.02)
+    """The library connected to `port`."""
+    return Lathe(port)
 
 
 @pytest.fixture

@@ -87,9 +87,9 @@ class ScriptedChip:
         try:
             answer = getattr(self, f"do_{command.name.lower()}")(payload)
         except ChipError as error:
-            return bytes([error.code])
-        assert isinstance(answer, bytes)
-        return answer if answer[:1] == bytes([ErrorCode.INVALID_PART]) else b"\0" + answer
+            detail = () if error.reason is None else (error.reason, error.operation)
+            return bytes([error.code, *detail])
+        return b"\0" + bytes(answer)
 
     def machine(self) -> Machine:
         """What HELLO tells."""
@@ -187,7 +187,8 @@ class ScriptedChip:
             raise refuse(ErrorCode.CRC_MISMATCH)
         found = verdict(image, self.machine())
         if found is not None:
-            return bytes([ErrorCode.INVALID_PART, found.refusal, found.operation])
+            code, command = ErrorCode.INVALID_PART, Command.UPLOAD_COMMIT
+            raise ChipError(command, code, found.refusal, found.operation)
         slot = next(slot for slot in range(PART_SLOTS) if slot not in self.slots)
         self.slots[slot] = image
         crc = crc16(image) ^ self.wrong_crc
@@ -234,12 +235,16 @@ class ScriptedChip:
 
 
 class ScriptedPort:
-    """A serial port with the chip behind it; has what `tornillo.link.Transport` asks for."""
+    """A serial port with the chip behind it; has what `tornillo.link.Transport` asks for.
+
+    `now` is its clock in seconds: only waiting for an answer that does not come takes time.
+    """
 
     def __init__(self, chip: ScriptedChip) -> None:
         """Connect `chip`."""
         self.chip = chip
         self.timeout: float | None = None
+        self.now = 0.0
         self.closed = False
         self.unplugged = False
         self.lose_answers = 0
@@ -254,6 +259,8 @@ class ScriptedPort:
         """Take from the answers."""
         if self.unplugged:
             raise OSError("device disconnected")
+        if not self._outgoing and self.timeout is not None:
+            self.now += self.timeout
         data = bytes(self._outgoing[:size])
         del self._outgoing[:size]
         return data
@@ -288,8 +295,7 @@ class ScriptedPort:
             payload = self._previous[1]
         else:
             payload = self.chip.execute(Command(frame.code), frame.payload)
-            if frame.code != Command.HELLO:
-                self._previous = frame, payload
+            self._previous = None if frame.code == Command.HELLO else (frame, payload)
         if self.lose_answers > 0:
             self.lose_answers -= 1
             return

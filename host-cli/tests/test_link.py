@@ -11,7 +11,14 @@ from tornillo.errors import ChipError, LinkError
 from tornillo.frames import Frame, encode
 from tornillo.lathe import Lathe
 from tornillo.link import Link
-from tornillo.protocol import FRAME_TRIES, Command, ErrorCode, Refusal, SettingId
+from tornillo.protocol import (
+    FRAME_TIMEOUT_MS,
+    FRAME_TRIES,
+    Command,
+    ErrorCode,
+    Refusal,
+    SettingId,
+)
 
 
 def test_a_lost_answer_is_asked_for_again_and_not_executed_twice(
@@ -43,6 +50,7 @@ def test_after_five_tries_the_link_gives_up_with_a_remedy(lathe: Lathe, port: Sc
     with pytest.raises(LinkError, match="no answer to STATUS after 5 tries") as caught:
         lathe.status()
     assert "cable" in caught.value.remedy
+    assert port.now == pytest.approx(FRAME_TRIES * FRAME_TIMEOUT_MS / 1000, abs=0.2)
     assert port.lose_answers == 100 - FRAME_TRIES
 
 
@@ -91,7 +99,7 @@ def test_each_request_starts_with_a_delimiter_to_end_garbage(
     written: list[bytes] = []
     monkeypatch.setattr(port, "write", written.append)
     with pytest.raises(LinkError):
-        Link(port, timeout_s=0.001).request(Command.HELLO)
+        Link(port).request(Command.HELLO)
     assert all(data[:1] == b"\0" == data[-1:] for data in written)
 
 

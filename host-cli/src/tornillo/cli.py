@@ -27,7 +27,7 @@ class TeachingGroup(click.Group):
 
 
 @click.group(cls=TeachingGroup, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(__version__)
+@click.version_option(__version__, prog_name="tornillo")
 @click.option(
     "--port",
     envvar="TORNILLO_PORT",

@@ -11,7 +11,7 @@ from tornillo.machine import Machine
 from tornillo.protocol import FEED_UNIT
 
 NM_PER_UNIT = {"mm": 1_000_000, "inch": 25_400_000}
-DECIMALS = {"mm": 3, "inch": 4}
+DECIMALS = {"mm": 2, "inch": 3}
 SECONDS_PER_MINUTE = 60
 
 
@@ -53,7 +53,7 @@ class Scale:
         return per_second * SECONDS_PER_MINUTE
 
     def show(self, value: float) -> str:
-        """A length with its unit, as precise as a step."""
+        """A length with its unit, about as precise as a step."""
         return f"{value:.{DECIMALS[self.units]}f} {self.units}"
 
     def show_diameter(self, radius_steps: int) -> str:

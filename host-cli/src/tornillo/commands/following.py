@@ -88,10 +88,15 @@ def _held(lathe: Lathe) -> TornilloError:
     )
 
 
+def on_terminal() -> bool:
+    """Whether messages go to a terminal."""
+    return sys.stderr.isatty()
+
+
 @contextmanager
 def _display() -> Iterator[Display]:
     """A progress bar on a terminal, otherwise a line for each new operation and pass."""
-    if sys.stderr.isatty():
+    if on_terminal():
         with _bar() as display:
             yield display
     else:

@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The library: what each method sends, and what it makes of the answers."""
+
+from pathlib import Path
+
+import pytest
+from scripted_chip import IDLE, ScriptedChip, ScriptedPort
+
+from tornillo import Axis, Part, SettingId, Status
+from tornillo.errors import ChipError, LinkError
+from tornillo.frames import crc16
+from tornillo.lathe import Lathe
+from tornillo.protocol import (
+    SETTINGS,
+    Alarm,
+    Command,
+    ErrorCode,
+    Refusal,
+    ResetCause,
+    State,
+    StatusFlag,
+)
+
+
+@pytest.fixture
+def image(lathe: Lathe, test_bar: Path) -> bytes:
+    """The image of the test bar."""
+    return Part.load(test_bar).image(lathe.machine())
+
+
+def test_an_upload_is_stored_byte_for_byte_and_reports_its_progress(
+    lathe: Lathe, chip: ScriptedChip, image: bytes
+) -> None:
+    progress: list[tuple[int, int]] = []
+    slot = lathe.upload(image, lambda sent, total: progress.append((sent, total)))
+    assert chip.slots == {slot: image}
+    assert progress == [(32, 72), (64, 72), (72, 72)]
+    assert lathe.read(slot) == image
+
+
+def test_an_upload_survives_a_line_that_loses_every_third_answer(
+    lathe: Lathe, port: ScriptedPort, chip: ScriptedChip, image: bytes
+) -> None:
+    sent = 0
+
+    def lose(*_progress: int) -> None:
+        nonlocal sent
+        sent += 1
+        port.lose_answers = sent % 3
+
+    slot = lathe.upload(image, lose)
+    assert chip.slots[slot] == image
+    assert chip.executed.count(Command.UPLOAD_DATA) == 3
+
+
+def test_an_upload_that_the_chip_stored_differently_is_refused(
+    lathe: Lathe, chip: ScriptedChip, image: bytes
+) -> None:
+    chip.wrong_crc = True
+    with pytest.raises(LinkError, match="stored another part than was sent"):
+        lathe.upload(image)
+
+
+def test_an_image_damaged_on_purpose_is_refused_by_the_chip_with_its_reason(
+    lathe: Lathe, chip: ScriptedChip, image: bytes
+) -> None:
+    damaged = bytearray(image)
+    damaged[56] = 99
+    with pytest.raises(ChipError) as caught:
+        lathe.upload(bytes(damaged))
+    assert caught.value.reason is Refusal.OPERATION_TYPE
+    assert caught.value.operation == 1
+    assert chip.slots == {}
+
+
+def test_stored_parts_are_listed_found_selected_and_deleted(lathe: Lathe, image: bytes) -> None:
+    first = lathe.upload(image)
+    second = lathe.upload(image)
+    lathe.select(second)
+    parts = lathe.parts()
+    assert [(part.slot, part.name, part.selected) for part in parts] == [
+        (first, "test-bar", False),
+        (second, "test-bar", True),
+    ]
+    assert (parts[0].length, parts[0].crc, parts[0].operations) == (72, crc16(image), 1)
+    assert lathe.find("test-bar").slot == second
+    assert lathe.find("0").slot == first
+    lathe.delete(second)
+    assert lathe.part(second) is None
+    with pytest.raises(ChipError) as caught:
+        lathe.find("other")
+    assert caught.value.code is ErrorCode.NO_PART
+
+
+def test_reading_an_empty_slot_is_refused(lathe: Lathe) -> None:
+    with pytest.raises(ChipError, match="no part in that slot"):
+        lathe.read(3)
+
+
+def test_reading_stops_when_the_chip_sends_nothing(
+    lathe: Lathe, chip: ScriptedChip, image: bytes
+) -> None:
+    slot = lathe.upload(image)
+    chip.refusals[Command.PART_READ] = b"\0"
+    with pytest.raises(ChipError, match="PART_READ"):
+        lathe.read(slot)
+
+
+def test_status_has_names_instead_of_numbers(lathe: Lathe, chip: ScriptedChip) -> None:
+    flags = StatusFlag.HOMED | StatusFlag.MOTION
+    chip.status = IDLE._replace(
+        state=State.RUNNING, flags=flags, slot=4, permille=500, reset_cause=ResetCause.WATCHDOG
+    )
+    status = lathe.status()
+    assert (status.state, status.slot, status.homed) == (State.RUNNING, 4, True)
+    assert status.flags == flags
+    assert status.reset_cause is ResetCause.WATCHDOG
+    assert (status.x, status.z, status.dead_x, status.dead_z) == (-1789, -8000, 23, 31)
+    assert status.moving
+    assert not status.finished
+
+
+def test_a_finished_run_stands_still_at_thousand_permille() -> None:
+    finished = Status.from_data(IDLE._replace(permille=1000))
+    assert finished.finished
+    assert not finished.moving
+    assert not Status.from_data(IDLE).finished
+
+
+@pytest.mark.parametrize("alarm", [alarm for alarm in Alarm if alarm is not Alarm.NONE])
+def test_every_alarm_is_told_with_cause_and_remedy(alarm: Alarm) -> None:
+    error = Status.from_data(IDLE._replace(alarm=alarm, alarm_detail=1)).alarm_error()
+    assert alarm.name in str(error)
+    assert error.remedy
+
+
+def test_an_alarm_of_one_axis_names_it() -> None:
+    data = IDLE._replace(alarm=Alarm.HOME_NOT_FOUND, alarm_detail=1)
+    assert "alarm HOME_NOT_FOUND of Z: " in str(Status.from_data(data).alarm_error())
+
+
+@pytest.mark.parametrize("change", [{"state": 77}, {"alarm": 77}, {"reset_cause": 0}])
+def test_a_status_that_this_version_does_not_know_is_refused(
+    lathe: Lathe, chip: ScriptedChip, change: dict[str, int]
+) -> None:
+    chip.status = IDLE._replace(**change)
+    with pytest.raises(LinkError, match="unknown to this tornillo"):
+        lathe.status()
+
+
+def test_part_zero_is_set_from_where_the_tool_stands(lathe: Lathe, chip: ScriptedChip) -> None:
+    lathe.zero(Axis.X, 1786)
+    lathe.zero(Axis.Z, -10)
+    assert chip.zeroed == [(0, 1786), (1, -10)]
+    machine = lathe.machine()
+    assert (machine.zero_x, machine.zero_z) == (-1789 - 1786, -7990)
+
+
+def test_settings_are_read_and_changed(lathe: Lathe) -> None:
+    lathe.set_setting(SettingId.RAPID_RATE_X, 900)
+    assert lathe.setting(SettingId.RAPID_RATE_X).value == 900
+    found = {entry.id: data for entry, data in lathe.settings()}
+    assert len(found) == len(SettingId)
+    entry = SETTINGS[SettingId.ZERO_Z]
+    assert found[entry.id] == (entry.default, entry.minimum, entry.maximum)
+
+
+def test_a_number_that_does_not_fit_its_field_is_refused_before_it_is_sent(
+    lathe: Lathe, port: ScriptedPort
+) -> None:
+    sent = len(port.requests)
+    with pytest.raises(ChipError) as caught:
+        lathe.zero(Axis.X, 2**40)
+    assert caught.value.code is ErrorCode.OUT_OF_RANGE
+    assert len(port.requests) == sent
+
+
+def test_the_verbs_of_motion_change_the_state(lathe: Lathe, image: bytes) -> None:
+    lathe.home()
+    assert lathe.status().state is State.HOMING
+    lathe.stop()
+    lathe.run(lathe.upload(image))
+    assert lathe.status().state is State.RUNNING
+    lathe.hold()
+    assert lathe.status().state is State.HOLD
+    lathe.resume()
+    lathe.stop()
+    assert lathe.status().state is State.IDLE
+    lathe.reset()
+
+
+def test_an_empty_answer_to_hello_is_refused(port: ScriptedPort, chip: ScriptedChip) -> None:
+    chip.refusals[Command.HELLO] = b"\0"
+    with pytest.raises(LinkError, match="speaks protocol none"):
+        Lathe(port)
+
+
+def test_a_transport_without_close_can_be_used(port: ScriptedPort) -> None:
+    class Wire:
+        timeout: float | None = None
+
+        def read(self, size: int = 1, /) -> bytes:
+            return port.read(size)
+
+        def write(self, data: bytes, /) -> int | None:
+            return port.write(data)
+
+    with Lathe(Wire()) as lathe:
+        assert lathe.status().homed

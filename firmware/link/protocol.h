@@ -325,7 +325,7 @@
 /* size is not that of its type */
 #define REFUSAL_OPERATION_SIZE              11
 /* x below 0 or above stock_radius, z_start above stock_front, or z or z_end
- * below retract - stock_length or above 32000 */
+ * below retract - stock_length */
 #define REFUSAL_OUTSIDE_STOCK               12
 /* whole part: zero_x + stock_radius + retract above 0, or zero_z +
  * stock_front + retract above 0; operation: zero_x + x below -travel_x, or

@@ -115,7 +115,7 @@ def test_the_good_image_is_accepted_and_has_the_documented_size() -> None:
         (with_operations(FaceRecord(0, -1)), Refusal.OUTSIDE_STOCK, 1),
         (with_operations(FaceRecord(0, 1001)), Refusal.OUTSIDE_STOCK, 1),
         (with_operations(FaceRecord(-4961, 0)), Refusal.OUTSIDE_STOCK, 1),
-        (with_operations(FaceRecord(POSITION_MAX + 1, 0)), Refusal.OUTSIDE_STOCK, 1),
+        (with_operations(FaceRecord(POSITION_MAX + 1, 0)), Refusal.EMPTY_CUT, 1),
         (with_operations(FaceRecord(100, 0)), Refusal.EMPTY_CUT, 1),
         (with_operations(FaceRecord(0, 1000)), Refusal.EMPTY_CUT, 1),
         (with_operations(CylinderRecord(101, -1, 500)), Refusal.OUTSIDE_STOCK, 1),

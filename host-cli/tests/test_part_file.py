@@ -194,7 +194,7 @@ def test_what_cannot_be_understood_is_refused_with_place_and_remedy(
             "operation 1 (face): the operation has noth",
             "small",
         ),
-        ("z = 0.0", "z = 2000.0", "operation 1 (face): the operation lies outside", "inside"),
+        ("z = 0.0", "z = 2000.0", "operation 1 (face): the operation has nothing", "allowance"),
         ("z = 0.0\n", "z = 0.2\n", "bar.toml:23: operation 2 (cylinder): mater", "in front first"),
     ],
 )

@@ -189,8 +189,6 @@ def _outside_stock(
             f"starts at {scale.show_z(operation.z_start)}, "
             f"the stock begins at {scale.show_z(header.stock_front)}",
         )
-    if z > POSITION_MAX:
-        yield key, f"{scale.show_z(z)} is out of all reason"
     nearest = header.retract - header.stock_length
     if z < nearest:
         yield (

@@ -89,21 +89,6 @@ static void encode(uint8_t length)
     } while (at != cdc_reply);
 }
 
-/* Answers the whole, correct request in frame_request. */
-static void answer(void)
-{
-    uint8_t seq = frame_request[FRAME_SEQ_AT];
-
-    if (!reply_length || seq != answered_seq || request_crc != answered_crc
-        || frame_code == COMMAND_HELLO) {
-        answered_crc = request_crc;
-        answered_seq = seq;
-        frame_length = body_length - BODY_MIN;
-        encode(commands_execute());
-    }
-    cdc_send(reply_length);
-}
-
 /* 1 = the frame that has just ended is a request. */
 static uint8_t is_good(void)
 {
@@ -116,15 +101,25 @@ static uint8_t is_good(void)
     return *(__data uint16_t *)(frame_request + length) == request_crc;
 }
 
-/* The zero that ends a frame. */
+/* The zero that ends a frame: answers the request, or counts a bad frame. */
 static void end_frame(void)
 {
+    uint8_t seq = frame_request[FRAME_SEQ_AT];
+
     if (!started)
         return;
-    if (is_good())
-        answer();
-    else if (frame_bad_frames != 0xFFFF)
+    if (is_good()) {
+        if (!reply_length || seq != answered_seq
+            || request_crc != answered_crc || frame_code == COMMAND_HELLO) {
+            answered_crc = request_crc;
+            answered_seq = seq;
+            frame_length = body_length - BODY_MIN;
+            encode(commands_execute());
+        }
+        cdc_send(reply_length);
+    } else if (frame_bad_frames != 0xFFFF) {
         frame_bad_frames++;
+    }
     started = 0;
     until_zero = 0;
 }

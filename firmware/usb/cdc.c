@@ -174,7 +174,6 @@ uint8_t cdc_request(void)
     uint8_t type = usb_ep0_out[0];
     uint8_t request = usb_ep0_out[1];
     uint8_t length = usb_ep0_out[6];
-    uint8_t i;
 
     if (usb_state != USB_CONFIGURED)
         return 0;
@@ -183,8 +182,8 @@ uint8_t cdc_request(void)
     if (type == FROM_INTERFACE) {
         if (request != GET_LINE_CODING)
             return 0;
-        for (i = 0; i < LINE_CODING_LENGTH; i++)
-            usb_ep0_in[i] = usb_line_coding[i];
+        usb_source = SOURCE_RAM;
+        usb_next = (uint16_t)usb_line_coding;
         usb_left = LINE_CODING_LENGTH;
         return 1;
     }
@@ -199,14 +198,6 @@ uint8_t cdc_request(void)
         return 1;
     }
     return request == SEND_BREAK;
-}
-
-void cdc_line_coding_arrived(void)
-{
-    uint8_t i;
-
-    for (i = 0; i < LINE_CODING_LENGTH; i++)
-        usb_line_coding[i] = usb_ep0_out[i];
 }
 
 uint8_t cdc_dtr(void)

@@ -85,20 +85,23 @@ static uint8_t is_interface(void)
 
 static uint8_t get_status(void)
 {
-    uint8_t bits;
+    uint8_t type = SETUP_TYPE;
     uint8_t status = 0;
+    uint8_t bits;
 
-    if (SETUP_TYPE == FROM_DEVICE) {
+    if (type == FROM_DEVICE) {
         status = USB_SELF_POWERED;
-    } else if (SETUP_TYPE == FROM_INTERFACE) {
+    } else if (type == FROM_INTERFACE) {
         if (!is_interface())
             return REFUSED;
-    } else {
+    } else if (type == FROM_ENDPOINT) {
         bits = endpoint();
         if (!bits)
             return REFUSED;
         if (usb_halted & bits)
             status = 1;
+    } else {
+        return REFUSED;
     }
     usb_ep0_in[0] = status;
     usb_ep0_in[1] = 0;
@@ -112,18 +115,17 @@ static uint8_t change_feature(void)
 {
     uint8_t bits = endpoint();
 
-    if (SETUP_TYPE != TO_ENDPOINT || !bits)
+    if (SETUP_TYPE != TO_ENDPOINT || SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH)
         return REFUSED;
     if (SETUP_VALUE_HIGH || SETUP_VALUE_LOW != FEATURE_ENDPOINT_HALT)
         return REFUSED;
     if (SETUP_REQUEST == SET_FEATURE) {
-        if (bits == EP0_BIT)
-            return REFUSED;
+        bits &= EP_ALL_BITS;
         cdc_halt(bits);
-    } else if (bits != EP0_BIT) {
+    } else {
         cdc_restart(bits);
     }
-    return DONE;
+    return bits;
 }
 
 static uint8_t set_address(void)
@@ -136,57 +138,38 @@ static uint8_t set_address(void)
     return DONE;
 }
 
-static void send_table(uint16_t address, uint8_t length)
-{
-    usb_source = SOURCE_FLASH;
-    usb_next = address;
-    usb_left = length;
-}
-
-static uint8_t get_string(void)
-{
-    uint8_t index = SETUP_VALUE_LOW;
-
-    if (index == STRING_LANGUAGES) {
-        send_table((uint16_t)string_languages, STRING_LANGUAGES_LENGTH);
-    } else if (index == STRING_VENDOR) {
-        send_table((uint16_t)string_vendor, STRING_VENDOR_LENGTH);
-    } else if (index == STRING_PRODUCT) {
-        send_table((uint16_t)string_product, STRING_PRODUCT_LENGTH);
-    } else if (index == STRING_SERIAL) {
-        usb_source = SOURCE_SERIAL;
-        usb_next = 0;
-        usb_left = USB_SERIAL_DESCRIPTOR_LENGTH;
-    } else {
-        return REFUSED;
-    }
-    return DONE;
-}
-
-/* A full-speed device has no device qualifier: refused, as asked for in 9.6.2. */
+/* A full-speed device has no device qualifier: refused, as 9.6.2 asks for. */
 static uint8_t get_descriptor(void)
 {
     uint8_t type = SETUP_VALUE_HIGH;
+    uint8_t index = SETUP_VALUE_LOW;
 
-    if (type == DESCRIPTOR_STRING)
-        return get_string();
-    if (SETUP_VALUE_LOW)
-        return REFUSED;
-    if (type == DESCRIPTOR_DEVICE)
-        send_table((uint16_t)device_descriptor, DEVICE_DESCRIPTOR_LENGTH);
-    else if (type == DESCRIPTOR_CONFIGURATION)
-        send_table((uint16_t)configuration_descriptor,
-                   CONFIGURATION_DESCRIPTOR_LENGTH);
-    else
-        return REFUSED;
-    return DONE;
-}
-
-static uint8_t get_configuration(void)
-{
-    usb_ep0_in[0] = usb_state == USB_CONFIGURED;
-    usb_left = 1;
-    return DONE;
+    usb_source = SOURCE_FLASH;
+    if (type == DESCRIPTOR_STRING) {
+        if (index == STRING_LANGUAGES) {
+            usb_next = (uint16_t)string_languages;
+            usb_left = STRING_LANGUAGES_LENGTH;
+        } else if (index == STRING_VENDOR) {
+            usb_next = (uint16_t)string_vendor;
+            usb_left = STRING_VENDOR_LENGTH;
+        } else if (index == STRING_PRODUCT) {
+            usb_next = (uint16_t)string_product;
+            usb_left = STRING_PRODUCT_LENGTH;
+        } else if (index == STRING_SERIAL) {
+            usb_source = SOURCE_RAM;
+            usb_next = (uint16_t)usb_serial_descriptor;
+            usb_left = USB_SERIAL_DESCRIPTOR_LENGTH;
+        }
+    } else if (!index) {
+        if (type == DESCRIPTOR_DEVICE) {
+            usb_next = (uint16_t)device_descriptor;
+            usb_left = DEVICE_DESCRIPTOR_LENGTH;
+        } else if (type == DESCRIPTOR_CONFIGURATION) {
+            usb_next = (uint16_t)configuration_descriptor;
+            usb_left = CONFIGURATION_DESCRIPTOR_LENGTH;
+        }
+    }
+    return usb_left; /* 0 = none of these */
 }
 
 static uint8_t set_configuration(void)
@@ -206,15 +189,6 @@ static uint8_t set_configuration(void)
     return DONE;
 }
 
-static uint8_t get_interface(void)
-{
-    if (!is_interface())
-        return REFUSED;
-    usb_ep0_in[0] = 0;
-    usb_left = 1;
-    return DONE;
-}
-
 /* There is only setting 0, but to select it resets the interface's endpoints
  * (9.1.1.5). */
 static uint8_t set_interface(void)
@@ -228,22 +202,12 @@ static uint8_t set_interface(void)
     return DONE;
 }
 
-static uint8_t read_request(void)
+/* Data of one byte, 0 or 1. */
+static uint8_t send_flag(uint8_t flag)
 {
-    uint8_t request = SETUP_REQUEST;
-    uint8_t type = SETUP_TYPE;
-
-    if (request == GET_STATUS && type <= FROM_ENDPOINT)
-        return get_status();
-    if (type == FROM_INTERFACE)
-        return request == GET_INTERFACE ? get_interface() : REFUSED;
-    if (type != FROM_DEVICE)
-        return REFUSED;
-    if (request == GET_DESCRIPTOR)
-        return get_descriptor();
-    if (request == GET_CONFIGURATION)
-        return get_configuration();
-    return REFUSED;
+    usb_ep0_in[0] = flag;
+    usb_left = 1;
+    return DONE;
 }
 
 uint8_t standard_request(void)
@@ -251,14 +215,26 @@ uint8_t standard_request(void)
     uint8_t request = SETUP_REQUEST;
     uint8_t type = SETUP_TYPE;
 
-    if (type & FROM_DEVICE)
-        return read_request();
-    if (SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH)
-        return REFUSED; /* SET_DESCRIPTOR would be the only one */
+    if (request == GET_STATUS)
+        return get_status();
     if (request == CLEAR_FEATURE || request == SET_FEATURE)
         return change_feature();
-    if (type == TO_INTERFACE)
-        return request == SET_INTERFACE ? set_interface() : REFUSED;
+    if (type == FROM_DEVICE) {
+        if (request == GET_DESCRIPTOR)
+            return get_descriptor();
+        if (request == GET_CONFIGURATION)
+            return send_flag(usb_state == USB_CONFIGURED);
+        return REFUSED;
+    }
+    if (type == FROM_INTERFACE) {
+        if (request == GET_INTERFACE && is_interface())
+            return send_flag(0);
+        return REFUSED;
+    }
+    if (SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH)
+        return REFUSED; /* SET_DESCRIPTOR would be the only one */
+    if (type == TO_INTERFACE && request == SET_INTERFACE)
+        return set_interface();
     if (type != TO_DEVICE)
         return REFUSED;
     if (request == SET_ADDRESS)

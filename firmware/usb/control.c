@@ -8,7 +8,7 @@
  *         --to chip-->  DATA_OUT  --data---> STATUS_IN --> IDLE
  *
  * A SETUP is taken in every stage: it ends what was under way (USB 2.0,
- * 8.5.3). From SETUP until PKTDIS is cleared at the end of setup() the engine
+ * 8.5.3). From SETUP until PKTDIS is cleared at the end of control_setup() the engine
  * handles no packet at all, so in between every descriptor may be changed,
  * including those of the data endpoints.
  *
@@ -66,16 +66,15 @@ void control_reset(void)
 static void send_data(void)
 {
     uint8_t count = usb_left;
-    uint8_t i;
 
     if (count > EP0_SIZE)
         count = EP0_SIZE;
-    if (usb_source == SOURCE_FLASH && count) {
-        usb_fetch(usb_next, count);
-    } else if (usb_source == SOURCE_SERIAL) {
-        for (i = 0; i < count; i++)
-            usb_ep0_in[i] = usb_serial_descriptor[(uint8_t)usb_next + i];
-    }
+    if (!count)
+        usb_source = SOURCE_BUFFER;
+    if (usb_source == SOURCE_FLASH)
+        usb_copy_flash(usb_next, count);
+    else if (usb_source == SOURCE_RAM)
+        usb_copy(usb_ep0_in, (__data uint8_t *)usb_next, count);
     usb_next += count;
     usb_left -= count;
     if (count < EP0_SIZE)
@@ -90,19 +89,6 @@ static void send_status(void)
     arm_in(0);
 }
 
-static uint8_t request(void)
-{
-    uint8_t type = SETUP_TYPE & TYPE_MASK;
-
-    usb_source = SOURCE_BUFFER;
-    usb_left = 0;
-    if (type == TYPE_STANDARD)
-        return standard_request();
-    if (type == TYPE_CLASS)
-        return cdc_request();
-    return 0;
-}
-
 /* Not more than the host asked for. Less than that, in full packets, needs an
  * empty one at the end. */
 static void limit_data(void)
@@ -114,18 +100,29 @@ static void limit_data(void)
     usb_left = SETUP_LENGTH_LOW;
 }
 
-static void setup(void)
+void control_setup(void)
 {
+    uint8_t type = SETUP_TYPE & TYPE_MASK;
+    uint8_t accepted = 0;
+
     usb_bd[BD_EP0_IN].stat = 0;
     UEP0 &= (uint8_t)~UEP_EPSTALL;
     usb_new_address = NO_ADDRESS;
+    usb_source = SOURCE_BUFFER;
+    usb_left = 0;
 
-    if (!request()) {
+    if (type == TYPE_STANDARD)
+        accepted = standard_request();
+    else if (type == TYPE_CLASS)
+        accepted = cdc_request();
+
+    type = SETUP_TYPE;
+    if (!accepted) {
         stall();
     } else if (!SETUP_LENGTH_LOW && !SETUP_LENGTH_HIGH) {
         send_status();
         arm_out(BD_UOWN | BD_DTSEN);
-    } else if (SETUP_TYPE & TYPE_TO_HOST) {
+    } else if (type & TYPE_TO_HOST) {
         limit_data();
         usb_stage = STAGE_DATA_IN;
         usb_in_stat = BD_UOWN | BD_DTSEN;
@@ -138,21 +135,15 @@ static void setup(void)
     UCON &= (uint8_t)~UCON_PKTDIS;
 }
 
-void control_ep0_out(void)
+void control_out(void)
 {
-    uint8_t pid = usb_bd[BD_EP0_OUT].stat & BD_PID;
-
-    if (pid == BD_PID_SETUP) {
-        setup();
-        return;
-    }
     if (usb_stage == STAGE_DATA_OUT) {
         /* The one request with data is SET_LINE_CODING. */
         if (usb_bd[BD_EP0_OUT].cnt != LINE_CODING_LENGTH) {
             stall();
             return;
         }
-        cdc_line_coding_arrived();
+        usb_copy(usb_line_coding, usb_ep0_out, LINE_CODING_LENGTH);
         send_status();
     } else {
         /* The status stage of a read, perhaps before all data were sent. */
@@ -161,7 +152,7 @@ void control_ep0_out(void)
     arm_out(BD_UOWN | BD_DTSEN);
 }
 
-void control_ep0_in(void)
+void control_in(void)
 {
     if (usb_stage == STAGE_DATA_IN) {
         if (usb_left || usb_ends_short)

@@ -131,28 +131,11 @@ static void resume(void)
     UIR &= (uint8_t)~UIR_ACTVIF;
 }
 
-/* The oldest transaction of the FIFO. Its descriptor is ours again. */
-static void transaction(void)
-{
-    uint8_t ustat = USTAT & USTAT_MASK;
-
-    /* Advance the FIFO first: what follows may start the next transaction. */
-    UIR &= (uint8_t)~UIR_TRNIF;
-    if (ustat == USTAT_EP0_OUT)
-        control_ep0_out();
-    else if (ustat == USTAT_EP0_IN)
-        control_ep0_in();
-    else if (ustat == USTAT_EP1_IN)
-        cdc_transaction(EP1_IN_BIT);
-    else if (ustat == USTAT_EP2_OUT)
-        cdc_transaction(EP2_OUT_BIT);
-    else if (ustat == USTAT_EP2_IN)
-        cdc_transaction(EP2_IN_BIT);
-}
-
 void usb_service(void)
 {
     uint8_t flags;
+    uint8_t ustat;
+    uint8_t pid;
 
     /* First, so that whatever happens from here on raises it again. */
     PIR2 &= (uint8_t)~PIR2_USBIF;
@@ -173,8 +156,27 @@ void usb_service(void)
         UEP2 &= (uint8_t)~UEP_EPSTALL;
         UIR &= (uint8_t)~UIR_STALLIF;
     }
-    if (flags & UIR_TRNIF)
-        transaction();
+    if (flags & UIR_TRNIF) {
+        /* The oldest transaction of the FIFO; its descriptor is ours again.
+         * Clearing TRNIF brings up the next one. */
+        ustat = USTAT & USTAT_MASK;
+        UIR &= (uint8_t)~UIR_TRNIF;
+        if (ustat == USTAT_EP0_OUT) {
+            pid = usb_bd[BD_EP0_OUT].stat & BD_PID;
+            if (pid == BD_PID_SETUP)
+                control_setup();
+            else
+                control_out();
+        } else if (ustat == USTAT_EP0_IN) {
+            control_in();
+        } else if (ustat == USTAT_EP2_OUT) {
+            cdc_transaction(EP2_OUT_BIT);
+        } else if (ustat == USTAT_EP2_IN) {
+            cdc_transaction(EP2_IN_BIT);
+        } else {
+            cdc_transaction(EP1_IN_BIT);
+        }
+    }
     cdc_pump();
 }
 

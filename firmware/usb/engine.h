@@ -114,7 +114,7 @@ extern volatile uint8_t usb_source; /* where its data come from, SOURCE_... */
 extern volatile uint8_t usb_left; /* bytes of its data stage still to send */
 extern volatile uint8_t usb_ends_short; /* the data stage needs a short packet at its end */
 extern volatile uint8_t usb_in_stat; /* BDnSTAT of the last EP0 IN packet */
-extern volatile uint16_t usb_next; /* flash address or index of the next byte to send */
+extern volatile uint16_t usb_next; /* address of the next byte to send */
 extern volatile uint8_t usb_halted; /* endpoints with ENDPOINT_HALT */
 extern volatile uint8_t usb_armed; /* endpoints whose buffer the engine owns */
 extern volatile uint8_t usb_toggle; /* set = next packet is DATA1 */
@@ -126,7 +126,7 @@ extern volatile uint8_t usb_sending; /* bytes of cdc_reply under way; main loop 
 /* Where the data stage of a control read comes from (usb_source). */
 #define SOURCE_BUFFER 0 /* already in usb_ep0_in */
 #define SOURCE_FLASH  1 /* a table at usb_next */
-#define SOURCE_SERIAL 2 /* usb_serial_descriptor from index usb_next */
+#define SOURCE_RAM    2 /* bytes in RAM at usb_next */
 
 /* Stages of a control transfer (usb_stage). */
 #define STAGE_IDLE      0 /* next is a SETUP */
@@ -135,9 +135,10 @@ extern volatile uint8_t usb_sending; /* bytes of cdc_reply under way; main loop 
 #define STAGE_STATUS_IN 3 /* our empty packet ends the transfer */
 
 /* ---- control.c: endpoint 0, transfers ----------------------------------- */
-void control_reset(void);   /* forget the transfer, wait for a SETUP */
-void control_ep0_out(void); /* a SETUP or OUT transaction has ended */
-void control_ep0_in(void);  /* an IN transaction has ended */
+void control_reset(void); /* forget the transfer, wait for a SETUP */
+void control_setup(void); /* a SETUP has arrived; PKTDIS is set */
+void control_out(void);   /* an OUT transaction has ended */
+void control_in(void);    /* an IN transaction has ended */
 
 /* ---- chapter9.c: standard requests --------------------------------------
  * Carries out the standard request in usb_ep0_out. 1 = done; for a request
@@ -155,18 +156,20 @@ void cdc_halt(uint8_t bits);       /* STALL from now on; PKTDIS is set */
 void cdc_transaction(uint8_t bit); /* a transaction of this endpoint ended */
 void cdc_pump(void);               /* arm what can be armed */
 uint8_t cdc_request(void);         /* class request in usb_ep0_out */
-void cdc_line_coding_arrived(void);
 
 /* ---- memory.asm --------------------------------------------------------
  * Writes the address of each buffer into its descriptor.
  */
 void usb_set_up_descriptors(void);
 
-/* ---- fetch.asm ----------------------------------------------------------
- * Copies `count` bytes (1..16) of flash from `address` on to usb_ep0_in. Saves
- * the table pointer and TABLAT, so it may interrupt a reader of flash.
- * 7 cycles per byte + 38.
+/* ---- copy.asm -----------------------------------------------------------
+ * Both copy `count` bytes, at least 1, and need about 50 cycles beside those
+ * for each byte: 5 in RAM, 7 from flash. usb_copy_flash() copies to usb_ep0_in
+ * (so at most 16) and leaves table pointer and TABLAT as they were; so it may
+ * interrupt a reader of flash.
  */
-void usb_fetch(uint16_t address, uint8_t count);
+void usb_copy(volatile __data uint8_t *to, volatile __data uint8_t *from,
+              uint8_t count);
+void usb_copy_flash(uint16_t address, uint8_t count);
 
 #endif

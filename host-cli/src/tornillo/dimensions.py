@@ -18,13 +18,15 @@ def along(scene: Scene, span: Span, edge: float, at: float, text: str) -> None:
     left, right = span
     for x in (left, right):
         scene.line(THIN, (x, edge), (x, at - BEYOND))
-    _arrow(scene, (left, at), 1, 0)
-    _arrow(scene, (right, at), -1, 0)
-    scene.line(THIN, (left, at), (right, at))
+    inwards = 1 if right - left > 3 * ARROW else -1
+    tail = 0.0 if inwards == 1 else 2 * ARROW
+    _arrow(scene, (left, at), inwards, 0)
+    _arrow(scene, (right, at), -inwards, 0)
+    scene.line(THIN, (left - tail, at), (right + tail, at))
     middle = (left + right) / 2
     anchor = "middle"
     if len(text) * TEXT_SIZE * CHARACTER + 2 * ARROW > right - left:
-        middle, anchor = left - BEYOND, "end"
+        middle, anchor = left - tail, "end"
     scene.text(Text((middle, at + TEXT_SIZE * 0.65), text, TEXT_SIZE, anchor))
 
 

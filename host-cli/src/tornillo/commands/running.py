@@ -27,6 +27,7 @@ def home() -> None:
     """
     with connected() as lathe:
         lathe.home()
+        click.echo("homing, X first; Ctrl-C stops", err=True)
         status = follow_homing(lathe)
     click.echo(f"homed; dead steps: X {status.dead_x}, Z {status.dead_z}")
 

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The library over a real pyserial port: a pseudo-terminal with the scripted chip behind it."""
+
+import os
+import pty
+import threading
+import tty
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+from scripted_chip import ScriptedChip, ScriptedPort
+
+from tornillo import Lathe, Part
+from tornillo.cli import main
+from tornillo.errors import PortError
+from tornillo.ports import open_port
+
+LONGEST_ANSWER = 4096
+
+
+@pytest.fixture
+def terminal(chip: ScriptedChip) -> Iterator[str]:
+    """The name of a pseudo-terminal that `chip` answers on."""
+    chip_side, host_side = pty.openpty()
+    tty.setraw(host_side)
+    port = ScriptedPort(chip)
+
+    def answer() -> None:
+        while data := read_or_nothing(chip_side):
+            port.write(data)
+            os.write(chip_side, port.read(LONGEST_ANSWER))
+
+    thread = threading.Thread(target=answer, daemon=True)
+    thread.start()
+    yield os.ttyname(host_side)
+    os.close(host_side)
+    thread.join()
+    os.close(chip_side)
+
+
+def read_or_nothing(descriptor: int) -> bytes:
+    """What comes in; nothing when the other side has been closed."""
+    try:
+        return os.read(descriptor, LONGEST_ANSWER)
+    except OSError:
+        return b""
+
+
+def test_a_part_is_uploaded_and_read_back_over_a_serial_port(
+    terminal: str, chip: ScriptedChip, test_bar: Path
+) -> None:
+    with Lathe.open(terminal) as lathe:
+        image = Part.load(test_bar).image(lathe.machine())
+        slot = lathe.upload(image)
+        assert lathe.read(slot) == image
+    assert chip.slots == {slot: image}
+
+
+def test_what_a_modem_probe_left_on_the_line_does_no_harm(terminal: str) -> None:
+    with open_port(terminal) as probe:
+        probe.write(b"AT+GCAP\r")
+    with Lathe.open(terminal) as lathe:
+        assert lathe.status().dead_x == 23
+
+
+def test_a_second_program_is_told_that_the_port_is_in_use(terminal: str) -> None:
+    with Lathe.open(terminal), pytest.raises(PortError, match="is in use by another program"):
+        Lathe.open(terminal)
+
+
+def test_the_command_line_works_over_a_serial_port(terminal: str) -> None:
+    result = CliRunner().invoke(main, ["--port", terminal, "status"])
+    assert result.exit_code == 0
+    assert "state" in result.stdout

@@ -132,6 +132,6 @@ def _mechanics(sheet: Sheet) -> None:
     sheet.wire("J15.4", (190, 34))
     ground(sheet, "GND", (190, 34), 2)
     sheet.text("M3 holes", (158, 46), 1.5)
-    for index in range(6):
+    for index in range(4):
         sheet.place(f"H{index + 1}", "Mechanical:MountingHole", "M3", (162 + 10 * index, 54),
                     footprint=fp.HOLE_M3, ref_at=(-1, -3, "left"), value_at=(-1, 3, "left"))

@@ -101,46 +101,58 @@ static uint8_t is_good(void)
     return *(__data uint16_t *)(frame_request + length) == request_crc;
 }
 
-/* The zero that ends a frame: answers the request, or counts a bad frame. */
-static void end_frame(void)
+/* The zero that ends a frame. 1 = there is a request to answer. */
+static uint8_t end_frame(void)
 {
-    uint8_t seq = frame_request[FRAME_SEQ_AT];
+    uint8_t good = 0;
 
-    if (!started)
-        return;
-    if (is_good()) {
-        if (!reply_length || seq != answered_seq
-            || request_crc != answered_crc || frame_code == COMMAND_HELLO) {
-            answered_crc = request_crc;
-            answered_seq = seq;
-            frame_length = body_length - BODY_MIN;
-            encode(commands_execute());
-        }
-        cdc_send(reply_length);
-    } else if (frame_bad_frames != 0xFFFF) {
-        frame_bad_frames++;
+    if (started) {
+        good = is_good();
+        if (!good && frame_bad_frames != 0xFFFF)
+            frame_bad_frames++;
     }
     started = 0;
     until_zero = 0;
+    return good;
 }
 
-void frame_poll(void)
+/* Takes bytes from the port until a request is complete. 1 = it is. */
+static uint8_t receive(void)
 {
     uint8_t left = FRAME_BYTES_PER_POLL;
     uint8_t length = cdc_received();
+    uint8_t complete = 0;
     uint8_t byte;
 
-    while (length && left && cdc_send_ready()) {
+    while (length && left && !complete) {
         byte = cdc_packet[packet_at];
         if (byte)
             decode(byte);
         else
-            end_frame();
+            complete = end_frame();
         left--;
         if (++packet_at == length) {
             packet_at = 0;
+            length = 0;
             cdc_release();
-            return;
         }
     }
+    return complete;
+}
+
+void frame_poll(void)
+{
+    uint8_t seq;
+
+    if (!cdc_send_ready() || !receive())
+        return;
+    seq = frame_request[FRAME_SEQ_AT];
+    if (!reply_length || seq != answered_seq || request_crc != answered_crc
+        || frame_code == COMMAND_HELLO) {
+        answered_seq = seq;
+        answered_crc = request_crc;
+        frame_length = body_length - BODY_MIN;
+        encode(commands_execute());
+    }
+    cdc_send(reply_length);
 }

@@ -71,33 +71,30 @@ void cdc_configure(void)
 {
     UEP1 = UEP_EPHSHK | UEP_EPCONDIS | UEP_EPINEN;
     UEP2 = UEP_EPHSHK | UEP_EPCONDIS | UEP_EPOUTEN | UEP_EPINEN;
-    cdc_restart(EP_ALL_BITS);
+    usb_toggle = 0;
     usb_notify = 1;
 }
 
-/* The descriptors of `bits` become `stat`. */
-static void set_descriptors(uint8_t bits, uint8_t stat)
+void cdc_restart(uint8_t bits, uint8_t stat)
 {
-    if (bits & EP1_IN_BIT)
+    if (bits & EP1_IN_BIT) {
+        usb_bd[BD_EP1_IN].cnt = 0;
         usb_bd[BD_EP1_IN].stat = stat;
-    if (bits & EP2_OUT_BIT)
+    }
+    if (bits & EP2_OUT_BIT) {
+        usb_bd[BD_EP2_OUT].cnt = 0;
         usb_bd[BD_EP2_OUT].stat = stat;
-    if (bits & EP2_IN_BIT)
+    }
+    if (bits & EP2_IN_BIT) {
+        usb_bd[BD_EP2_IN].cnt = 0;
         usb_bd[BD_EP2_IN].stat = stat;
-    usb_armed &= (uint8_t)~bits;
-}
-
-void cdc_restart(uint8_t bits)
-{
-    set_descriptors(bits, 0);
-    usb_halted &= (uint8_t)~bits;
-    usb_toggle &= (uint8_t)~bits;
-}
-
-void cdc_halt(uint8_t bits)
-{
-    usb_halted |= bits;
-    set_descriptors(bits, BD_UOWN | BD_BSTALL);
+    }
+    bits = ~bits;
+    usb_armed &= bits;
+    usb_toggle &= bits;
+    usb_halted &= bits;
+    if (stat)
+        usb_halted |= (uint8_t)~bits;
 }
 
 void cdc_transaction(uint8_t bit)
@@ -165,8 +162,10 @@ static void set_line_state(void)
     if (usb_line_state & LINE_STATE_DTR)
         return;
     usb_sending = 0;
-    if (!(usb_halted & EP2_IN_BIT))
-        set_descriptors(EP2_IN_BIT, 0);
+    if (usb_halted & EP2_IN_BIT)
+        return;
+    usb_bd[BD_EP2_IN].stat = 0;
+    usb_armed &= (uint8_t)~EP2_IN_BIT;
 }
 
 uint8_t cdc_request(void)

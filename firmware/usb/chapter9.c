@@ -121,9 +121,9 @@ static uint8_t change_feature(void)
         return REFUSED;
     if (SETUP_REQUEST == SET_FEATURE) {
         bits &= EP_ALL_BITS;
-        cdc_halt(bits);
+        cdc_restart(bits, BD_HALT);
     } else {
-        cdc_restart(bits);
+        cdc_restart(bits, 0);
     }
     return bits;
 }
@@ -196,9 +196,9 @@ static uint8_t set_interface(void)
     if (!is_interface() || SETUP_VALUE_LOW || SETUP_VALUE_HIGH)
         return REFUSED;
     if (SETUP_INDEX_LOW)
-        cdc_restart(EP2_OUT_BIT | EP2_IN_BIT);
+        cdc_restart(EP2_OUT_BIT | EP2_IN_BIT, 0);
     else
-        cdc_restart(EP1_IN_BIT);
+        cdc_restart(EP1_IN_BIT, 0);
     return DONE;
 }
 

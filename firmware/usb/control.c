@@ -50,8 +50,8 @@ static void arm_in(uint8_t count)
 static void stall(void)
 {
     usb_stage = STAGE_IDLE;
-    usb_bd[BD_EP0_IN].stat = BD_UOWN | BD_BSTALL;
-    arm_out(BD_UOWN | BD_BSTALL); /* a SETUP is accepted all the same */
+    usb_bd[BD_EP0_IN].stat = BD_HALT;
+    arm_out(BD_HALT); /* a SETUP is accepted all the same */
 }
 
 void control_reset(void)

@@ -150,12 +150,16 @@ uint8_t standard_request(void);
 /* ---- cdc.c: endpoints 1 and 2, class requests --------------------------- */
 void cdc_line_coding_default(void);
 void cdc_reset(void);              /* endpoints off, nothing pending */
-void cdc_configure(void);          /* endpoints on, DATA0, nothing halted */
-void cdc_restart(uint8_t bits);    /* DATA0, halt cleared; PKTDIS is set */
-void cdc_halt(uint8_t bits);       /* STALL from now on; PKTDIS is set */
+void cdc_configure(void);          /* after cdc_reset(): endpoints on, DATA0 */
 void cdc_transaction(uint8_t bit); /* a transaction of this endpoint ended */
 void cdc_pump(void);               /* arm what can be armed */
-uint8_t cdc_request(void);         /* class request in usb_ep0_out */
+uint8_t cdc_request(void);         /* class request, as above */
+
+/* Takes the endpoints `bits` back from the engine, while PKTDIS is set, and
+ * begins anew with DATA0: stat = 0 without a halt, BD_HALT halted. Halted
+ * descriptors hold no bytes, so the buffers stay free for the main loop. */
+void cdc_restart(uint8_t bits, uint8_t stat);
+#define BD_HALT (BD_UOWN | BD_BSTALL)
 
 /* ---- memory.asm --------------------------------------------------------
  * Writes the address of each buffer into its descriptor.

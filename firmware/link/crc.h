@@ -26,7 +26,6 @@ uint16_t crc16_update(uint16_t crc, uint8_t byte);
 /* The CRC of what `crc` covered, followed by data[0 .. length - 1] in RAM;
  * length 1..255 (0 counts as 256). Main loop only. 20 cycles per byte + 31:
  * 60 bytes take 0.1 ms. */
-uint16_t crc16_block(uint16_t crc, __data const uint8_t *data,
-                     uint8_t length);
+uint16_t crc16_block(uint16_t crc, __data const uint8_t *data, uint8_t length);
 
 #endif

@@ -52,10 +52,12 @@ static void decode(uint8_t byte)
             return;
         }
     }
-    if (body_length > FRAME_BODY_MAX)
+    if (body_length > FRAME_BODY_MAX) {
         return;
-    if (body_length < FRAME_BODY_MAX)
+    }
+    if (body_length < FRAME_BODY_MAX) {
         frame_request[body_length] = byte;
+    }
     body_length++;
 }
 
@@ -94,8 +96,9 @@ static uint8_t is_good(void)
 {
     uint8_t length = body_length;
 
-    if (until_zero || length < BODY_MIN || length > FRAME_BODY_MAX)
+    if (until_zero || length < BODY_MIN || length > FRAME_BODY_MAX) {
         return 0;
+    }
     length -= CRC_SIZE;
     request_crc = crc16_block(CRC16_INITIAL, frame_request, length);
     return *(__data uint16_t *)(frame_request + length) == request_crc;
@@ -108,8 +111,9 @@ static uint8_t end_frame(void)
 
     if (started) {
         good = is_good();
-        if (!good && frame_bad_frames != 0xFFFF)
+        if (!good && frame_bad_frames != 0xFFFF) {
             frame_bad_frames++;
+        }
     }
     started = 0;
     until_zero = 0;
@@ -126,10 +130,11 @@ static uint8_t receive(void)
 
     while (length && left && !complete) {
         byte = cdc_packet[packet_at];
-        if (byte)
+        if (byte) {
             decode(byte);
-        else
+        } else {
             complete = end_frame();
+        }
         left--;
         if (++packet_at == length) {
             packet_at = 0;
@@ -144,11 +149,12 @@ void frame_poll(void)
 {
     uint8_t seq;
 
-    if (!cdc_send_ready() || !receive())
+    if (!cdc_send_ready() || !receive()) {
         return;
+    }
     seq = frame_request[FRAME_SEQ_AT];
-    if (!reply_length || seq != answered_seq || request_crc != answered_crc
-        || frame_code == COMMAND_HELLO) {
+    if (!reply_length || seq != answered_seq || request_crc != answered_crc ||
+        frame_code == COMMAND_HELLO) {
         answered_seq = seq;
         answered_crc = request_crc;
         frame_length = body_length - BODY_MIN;

@@ -45,7 +45,7 @@
 
 /* The request as it was sent: seq, code, payload, CRC. */
 extern uint8_t frame_request[FRAME_BODY_MAX];
-#define frame_code    (frame_request[FRAME_CODE_AT])
+#define frame_code (frame_request[FRAME_CODE_AT])
 #define frame_payload (frame_request + FRAME_PAYLOAD_AT)
 extern uint8_t frame_length; /* payload bytes of the request */
 

@@ -24,14 +24,14 @@
 #include "sfr.h"
 
 /* Class requests: CDC 1.2 and PSTN 1.2, table 13. */
-#define SET_LINE_CODING        0x20
-#define GET_LINE_CODING        0x21
+#define SET_LINE_CODING 0x20
+#define GET_LINE_CODING 0x21
 #define SET_CONTROL_LINE_STATE 0x22
-#define SEND_BREAK             0x23
+#define SEND_BREAK 0x23
 
 /* Notification, and what it says: carrier and data set ready, for good. Some
  * programs wait for them before they open the port. */
-#define SERIAL_STATE         0x20
+#define SERIAL_STATE 0x20
 
 /* bmRequestType of a class request with a data stage to the host; the other
  * direction is 0x21. Also the first byte of a notification. */
@@ -39,7 +39,7 @@
 
 #define LINE_STATE_DTR 0x01
 
-#define SERIAL_STATE_LENGTH  10
+#define SERIAL_STATE_LENGTH 10
 #define SERIAL_STATE_DCD_DSR 0x03
 
 /* 115200 baud, 1 stop bit, no parity, 8 bits. Stored and reported, otherwise of
@@ -93,18 +93,20 @@ void cdc_restart(uint8_t bits, uint8_t stat)
     usb_armed &= bits;
     usb_toggle &= bits;
     usb_halted &= bits;
-    if (stat)
+    if (stat) {
         usb_halted |= (uint8_t)~bits;
+    }
 }
 
 void cdc_transaction(uint8_t bit)
 {
     usb_armed &= (uint8_t)~bit;
     usb_toggle ^= bit;
-    if (bit == EP2_OUT_BIT)
+    if (bit == EP2_OUT_BIT) {
         usb_received = usb_bd[BD_EP2_OUT].cnt; /* 0: cdc_pump arms again */
-    else if (bit == EP2_IN_BIT)
+    } else if (bit == EP2_IN_BIT) {
         usb_sending = 0;
+    }
 }
 
 static void write_serial_state(void)
@@ -125,8 +127,9 @@ static void write_serial_state(void)
 static uint8_t handover(uint8_t bit)
 {
     usb_armed |= bit;
-    if (usb_toggle & bit)
+    if (usb_toggle & bit) {
         return BD_UOWN | BD_DTSEN | BD_DTS;
+    }
     return BD_UOWN | BD_DTSEN;
 }
 
@@ -159,11 +162,13 @@ void cdc_pump(void)
 static void set_line_state(void)
 {
     usb_line_state = usb_ep0_out[2];
-    if (usb_line_state & LINE_STATE_DTR)
+    if (usb_line_state & LINE_STATE_DTR) {
         return;
+    }
     usb_sending = 0;
-    if (usb_halted & EP2_IN_BIT)
+    if (usb_halted & EP2_IN_BIT) {
         return;
+    }
     usb_bd[BD_EP2_IN].stat = 0;
     usb_armed &= (uint8_t)~EP2_IN_BIT;
 }
@@ -174,24 +179,31 @@ uint8_t cdc_request(void)
     uint8_t request = usb_ep0_out[1];
     uint8_t length = usb_ep0_out[6];
 
-    if (usb_state != USB_CONFIGURED)
+    if (usb_state != USB_CONFIGURED) {
         return 0;
-    if (usb_ep0_out[4] || usb_ep0_out[5]) /* interface 0 has them all */
+    }
+    /* Interface 0 has them all. */
+    if (usb_ep0_out[4] || usb_ep0_out[5]) {
         return 0;
+    }
     if (type == FROM_INTERFACE) {
-        if (request != GET_LINE_CODING)
+        if (request != GET_LINE_CODING) {
             return 0;
+        }
         usb_source = SOURCE_RAM;
         usb_next = (uint16_t)usb_line_coding;
         usb_left = LINE_CODING_LENGTH;
         return 1;
     }
-    if (usb_ep0_out[7])
+    if (usb_ep0_out[7]) {
         return 0;
-    if (request == SET_LINE_CODING)
+    }
+    if (request == SET_LINE_CODING) {
         return length == LINE_CODING_LENGTH;
-    if (length)
+    }
+    if (length) {
         return 0;
+    }
     if (request == SET_CONTROL_LINE_STATE) {
         set_line_state();
         return 1;

@@ -52,8 +52,8 @@
 /* ---- Life cycle --------------------------------------------------------- */
 
 /* Sets up memory and registers and reads the serial number from EEPROM. Main,
- * once, before GIEL is set; takes 60 us. Leaves the engine off: usb_tick() turns
- * it on when there is a cable. Enables its own interrupt at low priority. */
+ * once, before GIEL is set; takes 60 us. Leaves the engine off: usb_tick()
+ * turns it on when there is a cable. Enables its own interrupt at low priority. */
 void usb_init(void);
 
 /* Serves the engine: at most one transaction, bus reset, suspend, resume. Low
@@ -96,8 +96,8 @@ void cdc_release(void);
  * cdc_send_ready() is 1. */
 extern volatile uint8_t cdc_reply[CDC_PACKET_SIZE];
 
-/* 1 = nothing under way, cdc_reply may be written. With no host this is 1: what
- * is sent then is dropped. */
+/* 1 = nothing under way, cdc_reply may be written. With no host this is 1:
+ * what is sent then is dropped. */
 uint8_t cdc_send_ready(void);
 
 /* Sends cdc_reply[0 .. length - 1] as one packet. Only while cdc_send_ready()

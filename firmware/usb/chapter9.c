@@ -14,41 +14,41 @@
 #include "sfr.h"
 
 #define REFUSED 0
-#define DONE    1
+#define DONE 1
 
-#define SETUP_TYPE        usb_ep0_out[0]
-#define SETUP_REQUEST     usb_ep0_out[1]
-#define SETUP_VALUE_LOW   usb_ep0_out[2]
-#define SETUP_VALUE_HIGH  usb_ep0_out[3]
-#define SETUP_INDEX_LOW   usb_ep0_out[4]
-#define SETUP_INDEX_HIGH  usb_ep0_out[5]
-#define SETUP_LENGTH_LOW  usb_ep0_out[6]
+#define SETUP_TYPE usb_ep0_out[0]
+#define SETUP_REQUEST usb_ep0_out[1]
+#define SETUP_VALUE_LOW usb_ep0_out[2]
+#define SETUP_VALUE_HIGH usb_ep0_out[3]
+#define SETUP_INDEX_LOW usb_ep0_out[4]
+#define SETUP_INDEX_HIGH usb_ep0_out[5]
+#define SETUP_LENGTH_LOW usb_ep0_out[6]
 #define SETUP_LENGTH_HIGH usb_ep0_out[7]
 
 /* bmRequestType: direction and recipient. */
-#define TO_DEVICE      0x00
-#define TO_INTERFACE   0x01
-#define TO_ENDPOINT    0x02
-#define FROM_DEVICE    0x80
+#define TO_DEVICE 0x00
+#define TO_INTERFACE 0x01
+#define TO_ENDPOINT 0x02
+#define FROM_DEVICE 0x80
 #define FROM_INTERFACE 0x81
-#define FROM_ENDPOINT  0x82
+#define FROM_ENDPOINT 0x82
 
 /* bRequest. */
-#define GET_STATUS        0
-#define CLEAR_FEATURE     1
-#define SET_FEATURE       3
-#define SET_ADDRESS       5
-#define GET_DESCRIPTOR    6
+#define GET_STATUS 0
+#define CLEAR_FEATURE 1
+#define SET_FEATURE 3
+#define SET_ADDRESS 5
+#define GET_DESCRIPTOR 6
 #define GET_CONFIGURATION 8
 #define SET_CONFIGURATION 9
-#define GET_INTERFACE     10
-#define SET_INTERFACE     11
+#define GET_INTERFACE 10
+#define SET_INTERFACE 11
 
 #define FEATURE_ENDPOINT_HALT 0
 
-#define DESCRIPTOR_DEVICE        1
+#define DESCRIPTOR_DEVICE 1
 #define DESCRIPTOR_CONFIGURATION 2
-#define DESCRIPTOR_STRING        3
+#define DESCRIPTOR_STRING 3
 
 #define ADDRESS_MAX 127
 
@@ -60,26 +60,33 @@ static uint8_t endpoint(void)
 {
     uint8_t address = SETUP_INDEX_LOW;
 
-    if (SETUP_INDEX_HIGH)
+    if (SETUP_INDEX_HIGH) {
         return 0;
-    if (address == 0x00 || address == 0x80)
+    }
+    if (address == 0x00 || address == 0x80) {
         return EP0_BIT;
-    if (usb_state != USB_CONFIGURED)
+    }
+    if (usb_state != USB_CONFIGURED) {
         return 0;
-    if (address == 0x81)
+    }
+    if (address == 0x81) {
         return EP1_IN_BIT;
-    if (address == 0x02)
+    }
+    if (address == 0x02) {
         return EP2_OUT_BIT;
-    if (address == 0x82)
+    }
+    if (address == 0x82) {
         return EP2_IN_BIT;
+    }
     return 0;
 }
 
 /* 1 = the interface in wIndex exists now. */
 static uint8_t is_interface(void)
 {
-    if (usb_state != USB_CONFIGURED || SETUP_INDEX_HIGH)
+    if (usb_state != USB_CONFIGURED || SETUP_INDEX_HIGH) {
         return 0;
+    }
     return SETUP_INDEX_LOW < 2;
 }
 
@@ -92,14 +99,17 @@ static uint8_t get_status(void)
     if (type == FROM_DEVICE) {
         status = USB_SELF_POWERED;
     } else if (type == FROM_INTERFACE) {
-        if (!is_interface())
+        if (!is_interface()) {
             return REFUSED;
+        }
     } else if (type == FROM_ENDPOINT) {
         bits = endpoint();
-        if (!bits)
+        if (!bits) {
             return REFUSED;
-        if (usb_halted & bits)
+        }
+        if (usb_halted & bits) {
             status = 1;
+        }
     } else {
         return REFUSED;
     }
@@ -115,10 +125,12 @@ static uint8_t change_feature(void)
 {
     uint8_t bits = endpoint();
 
-    if (SETUP_TYPE != TO_ENDPOINT || SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH)
+    if (SETUP_TYPE != TO_ENDPOINT || SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH) {
         return REFUSED;
-    if (SETUP_VALUE_HIGH || SETUP_VALUE_LOW != FEATURE_ENDPOINT_HALT)
+    }
+    if (SETUP_VALUE_HIGH || SETUP_VALUE_LOW != FEATURE_ENDPOINT_HALT) {
         return REFUSED;
+    }
     if (SETUP_REQUEST == SET_FEATURE) {
         bits &= EP_ALL_BITS;
         cdc_restart(bits, BD_HALT);
@@ -130,10 +142,12 @@ static uint8_t change_feature(void)
 
 static uint8_t set_address(void)
 {
-    if (SETUP_VALUE_HIGH || SETUP_VALUE_LOW > ADDRESS_MAX)
+    if (SETUP_VALUE_HIGH || SETUP_VALUE_LOW > ADDRESS_MAX) {
         return REFUSED;
-    if (usb_state == USB_CONFIGURED)
+    }
+    if (usb_state == USB_CONFIGURED) {
         return REFUSED;
+    }
     usb_new_address = SETUP_VALUE_LOW;
     return DONE;
 }
@@ -174,10 +188,12 @@ static uint8_t get_descriptor(void)
 
 static uint8_t set_configuration(void)
 {
-    if (usb_state == USB_DEFAULT || SETUP_VALUE_HIGH)
+    if (usb_state == USB_DEFAULT || SETUP_VALUE_HIGH) {
         return REFUSED;
-    if (SETUP_VALUE_LOW > 1)
+    }
+    if (SETUP_VALUE_LOW > 1) {
         return REFUSED;
+    }
     UEP1 = 0;
     UEP2 = 0;
     cdc_reset();
@@ -193,12 +209,14 @@ static uint8_t set_configuration(void)
  * (9.1.1.5). */
 static uint8_t set_interface(void)
 {
-    if (!is_interface() || SETUP_VALUE_LOW || SETUP_VALUE_HIGH)
+    if (!is_interface() || SETUP_VALUE_LOW || SETUP_VALUE_HIGH) {
         return REFUSED;
-    if (SETUP_INDEX_LOW)
+    }
+    if (SETUP_INDEX_LOW) {
         cdc_restart(EP2_OUT_BIT | EP2_IN_BIT, 0);
-    else
+    } else {
         cdc_restart(EP1_IN_BIT, 0);
+    }
     return DONE;
 }
 
@@ -215,31 +233,41 @@ uint8_t standard_request(void)
     uint8_t request = SETUP_REQUEST;
     uint8_t type = SETUP_TYPE;
 
-    if (request == GET_STATUS)
+    if (request == GET_STATUS) {
         return get_status();
-    if (request == CLEAR_FEATURE || request == SET_FEATURE)
+    }
+    if (request == CLEAR_FEATURE || request == SET_FEATURE) {
         return change_feature();
+    }
     if (type == FROM_DEVICE) {
-        if (request == GET_DESCRIPTOR)
+        if (request == GET_DESCRIPTOR) {
             return get_descriptor();
-        if (request == GET_CONFIGURATION)
+        }
+        if (request == GET_CONFIGURATION) {
             return send_flag(usb_state == USB_CONFIGURED);
+        }
         return REFUSED;
     }
     if (type == FROM_INTERFACE) {
-        if (request == GET_INTERFACE && is_interface())
+        if (request == GET_INTERFACE && is_interface()) {
             return send_flag(0);
+        }
         return REFUSED;
     }
-    if (SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH)
+    if (SETUP_LENGTH_LOW || SETUP_LENGTH_HIGH) {
         return REFUSED; /* SET_DESCRIPTOR would be the only one */
-    if (type == TO_INTERFACE && request == SET_INTERFACE)
+    }
+    if (type == TO_INTERFACE && request == SET_INTERFACE) {
         return set_interface();
-    if (type != TO_DEVICE)
+    }
+    if (type != TO_DEVICE) {
         return REFUSED;
-    if (request == SET_ADDRESS)
+    }
+    if (request == SET_ADDRESS) {
         return set_address();
-    if (request == SET_CONFIGURATION)
+    }
+    if (request == SET_CONFIGURATION) {
         return set_configuration();
+    }
     return REFUSED;
 }

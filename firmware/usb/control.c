@@ -8,7 +8,7 @@
  *         --to chip-->  DATA_OUT  --data---> STATUS_IN --> IDLE
  *
  * A SETUP is taken in every stage: it ends what was under way (USB 2.0,
- * 8.5.3). From SETUP until PKTDIS is cleared at the end of control_setup() the engine
+ * 8.5.3). From SETUP until control_setup() clears PKTDIS at its end the engine
  * handles no packet at all, so in between every descriptor may be changed,
  * including those of the data endpoints.
  *
@@ -21,14 +21,14 @@
 #include "usb/cdc.h"
 #include "usb/engine.h"
 
-#define SETUP_TYPE       usb_ep0_out[0]
+#define SETUP_TYPE usb_ep0_out[0]
 #define SETUP_LENGTH_LOW usb_ep0_out[6]
 #define SETUP_LENGTH_HIGH usb_ep0_out[7]
 
-#define TYPE_TO_HOST  0x80
-#define TYPE_MASK     0x60
+#define TYPE_TO_HOST 0x80
+#define TYPE_MASK 0x60
 #define TYPE_STANDARD 0x00
-#define TYPE_CLASS    0x20
+#define TYPE_CLASS 0x20
 
 #define NO_ADDRESS 0xFF
 
@@ -67,18 +67,22 @@ static void send_data(void)
 {
     uint8_t count = usb_left;
 
-    if (count > EP0_SIZE)
+    if (count > EP0_SIZE) {
         count = EP0_SIZE;
-    if (!count)
+    }
+    if (!count) {
         usb_source = SOURCE_BUFFER;
-    if (usb_source == SOURCE_FLASH)
+    }
+    if (usb_source == SOURCE_FLASH) {
         usb_copy_flash(usb_next, count);
-    else if (usb_source == SOURCE_RAM)
+    } else if (usb_source == SOURCE_RAM) {
         usb_copy(usb_ep0_in, (__data uint8_t *)usb_next, count);
+    }
     usb_next += count;
     usb_left -= count;
-    if (count < EP0_SIZE)
+    if (count < EP0_SIZE) {
         usb_ends_short = 0;
+    }
     arm_in(count);
 }
 
@@ -94,8 +98,9 @@ static void send_status(void)
 static void limit_data(void)
 {
     usb_ends_short = 1;
-    if (SETUP_LENGTH_HIGH || usb_left < SETUP_LENGTH_LOW)
+    if (SETUP_LENGTH_HIGH || usb_left < SETUP_LENGTH_LOW) {
         return;
+    }
     usb_ends_short = 0;
     usb_left = SETUP_LENGTH_LOW;
 }
@@ -111,10 +116,11 @@ void control_setup(void)
     usb_source = SOURCE_BUFFER;
     usb_left = 0;
 
-    if (type == TYPE_STANDARD)
+    if (type == TYPE_STANDARD) {
         accepted = standard_request();
-    else if (type == TYPE_CLASS)
+    } else if (type == TYPE_CLASS) {
         accepted = cdc_request();
+    }
 
     type = SETUP_TYPE;
     if (!accepted) {
@@ -155,8 +161,9 @@ void control_out(void)
 void control_in(void)
 {
     if (usb_stage == STAGE_DATA_IN) {
-        if (usb_left || usb_ends_short)
+        if (usb_left || usb_ends_short) {
             send_data();
+        }
     } else if (usb_stage == STAGE_STATUS_IN) {
         usb_stage = STAGE_IDLE;
         /* Only now: the host still used the old address for this packet. */

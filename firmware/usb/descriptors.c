@@ -15,26 +15,28 @@
 #include "usb/engine.h"
 #include "usb/usb_config.h"
 
-#define LOW_BYTE(word)  ((word) & 0xFF)
+#define LOW_BYTE(word) ((word)&0xFF)
 #define HIGH_BYTE(word) ((word) >> 8)
 
 /* Descriptor types: USB 2.0 table 9-5, CDC 1.2 table 12. */
-#define TYPE_DEVICE        1
+#define TYPE_DEVICE 1
 #define TYPE_CONFIGURATION 2
-#define TYPE_STRING        3
-#define TYPE_INTERFACE     4
-#define TYPE_ENDPOINT      5
-#define TYPE_CS_INTERFACE  0x24
+#define TYPE_STRING 3
+#define TYPE_INTERFACE 4
+#define TYPE_ENDPOINT 5
+#define TYPE_CS_INTERFACE 0x24
 
 #define CLASS_COMMUNICATIONS 0x02
-#define CLASS_CDC_DATA       0x0A
-#define SUBCLASS_ACM         0x02
-#define PROTOCOL_NONE        0x00
+#define CLASS_CDC_DATA 0x0A
+#define SUBCLASS_ACM 0x02
+#define PROTOCOL_NONE 0x00
 
 /* bmAttributes: bit 7 is always one, bit 6 = has a supply of its own, bit 5 =
  * remote wake-up, which a lathe has no use for. */
 #define CONFIGURATION_ATTRIBUTES (0x80 | USB_SELF_POWERED << 6)
 
+/* One field or one group of fields a line, as the specifications print them. */
+/* clang-format off */
 __code const uint8_t device_descriptor[DEVICE_DESCRIPTOR_LENGTH] = {
     DEVICE_DESCRIPTOR_LENGTH,
     TYPE_DEVICE,
@@ -92,3 +94,4 @@ __code const uint8_t string_product[STRING_PRODUCT_LENGTH] = {
     'T', 0, 'o', 0, 'r', 0, 'n', 0, 'i', 0, 'l', 0, 'l', 0, 'o', 0,
     ' ', 0, 'l', 0, 'a', 0, 't', 0, 'h', 0, 'e', 0,
 };
+/* clang-format on */

@@ -65,13 +65,16 @@ static void read_serial_number(void)
         EECON1 = 1; /* RD: the byte is there in the next cycle */
         usb_serial_descriptor[i] = EEDATA;
         usb_serial_descriptor[i + 1] = 0;
-        if (!is_serial_character(EEDATA))
+        if (!is_serial_character(EEDATA)) {
             valid = 0;
+        }
     }
-    if (valid)
+    if (valid) {
         return;
-    for (i = 2; i < USB_SERIAL_DESCRIPTOR_LENGTH; i += 2)
+    }
+    for (i = 2; i < USB_SERIAL_DESCRIPTOR_LENGTH; i += 2) {
         usb_serial_descriptor[i] = '0';
+    }
 }
 
 void usb_init(void)
@@ -99,17 +102,23 @@ static void bus_reset(void)
      * entry of the FIFO shows up within 6 cycles of clearing TRNIF. */
     for (i = 0; i < USTAT_DEPTH; i++) {
         UIR &= (uint8_t)~UIR_TRNIF;
-        __asm nop __endasm;
-        __asm nop __endasm;
-        __asm nop __endasm;
-    }
-    usb_state = USB_DEFAULT;
-    cdc_reset();
-    control_reset();
-    UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
-    UIE &= (uint8_t)~UIR_ACTVIF;
-    UCON = UCON_USBEN; /* PKTDIS and SUSPND off */
-    UIR &= (uint8_t)~UIR_URSTIF;
+        __asm nop
+__endasm
+;
+__asm nop
+__endasm
+;
+__asm nop
+__endasm
+;
+}
+usb_state = USB_DEFAULT;
+cdc_reset();
+control_reset();
+UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
+UIE &= (uint8_t)~UIR_ACTVIF;
+UCON = UCON_USBEN; /* PKTDIS and SUSPND off */
+UIR &= (uint8_t)~UIR_URSTIF;
 }
 
 /* 3 ms without traffic. The chip goes on cutting; only the transceiver sleeps
@@ -141,14 +150,16 @@ void usb_service(void)
     PIR2 &= (uint8_t)~PIR2_USBIF;
 
     flags = UIR & UIE;
-    if (flags & UIR_ACTVIF)
+    if (flags & UIR_ACTVIF) {
         resume();
+    }
     if (flags & UIR_URSTIF) {
         bus_reset();
         return;
     }
-    if (flags & UIR_IDLEIF)
+    if (flags & UIR_IDLEIF) {
         suspend();
+    }
     if (flags & UIR_STALLIF) {
         /* The stall itself stays in the buffer descriptor. */
         UEP0 &= (uint8_t)~UEP_EPSTALL;
@@ -163,10 +174,11 @@ void usb_service(void)
         UIR &= (uint8_t)~UIR_TRNIF;
         if (ustat == USTAT_EP0_OUT) {
             pid = usb_bd[BD_EP0_OUT].stat & BD_PID;
-            if (pid == BD_PID_SETUP)
+            if (pid == BD_PID_SETUP) {
                 control_setup();
-            else
+            } else {
                 control_out();
+            }
         } else if (ustat == USTAT_EP0_IN) {
             control_in();
         } else if (ustat == USTAT_EP2_OUT) {
@@ -185,19 +197,22 @@ void usb_tick(void)
     uint8_t vbus = USB_VBUS_PORT & USB_VBUS_MASK;
 
     if (usb_state == USB_DETACHED) {
-        if (!vbus)
+        if (!vbus) {
             usb_vbus_ms = 0;
-        else if (++usb_vbus_ms == USB_ATTACH_MS)
+        } else if (++usb_vbus_ms == USB_ATTACH_MS) {
             attach();
+        }
     } else {
-        if (vbus)
+        if (vbus) {
             usb_vbus_ms = 0;
-        else if (++usb_vbus_ms == USB_DETACH_MS)
+        } else if (++usb_vbus_ms == USB_DETACH_MS) {
             detach();
+        }
     }
     /* A net under the interrupt: a flag that is up gets served. */
-    if (UIR & UIE)
+    if (UIR & UIE) {
         PIR2 |= PIR2_USBIF;
+    }
 }
 
 uint8_t usb_configured(void)

@@ -24,39 +24,39 @@
 
 /* ---- Register bits ------------------------------------------------------ */
 #define UCON_PKTDIS 0x10
-#define UCON_USBEN  0x08
+#define UCON_USBEN 0x08
 #define UCON_SUSPND 0x02
 
 #define UCFG_UPUEN 0x10
-#define UCFG_FSEN  0x04
+#define UCFG_FSEN 0x04
 
 /* UIR and UIE share their layout. */
 #define UIR_STALLIF 0x20
-#define UIR_IDLEIF  0x10
-#define UIR_TRNIF   0x08
-#define UIR_ACTVIF  0x04
-#define UIR_URSTIF  0x01
+#define UIR_IDLEIF 0x10
+#define UIR_TRNIF 0x08
+#define UIR_ACTVIF 0x04
+#define UIR_URSTIF 0x01
 
 #define USTAT_EP0_OUT (0 << 3)
-#define USTAT_EP0_IN  (0 << 3 | 0x04)
-#define USTAT_EP1_IN  (1 << 3 | 0x04)
+#define USTAT_EP0_IN (0 << 3 | 0x04)
+#define USTAT_EP1_IN (1 << 3 | 0x04)
 #define USTAT_EP2_OUT (2 << 3)
-#define USTAT_EP2_IN  (2 << 3 | 0x04)
-#define USTAT_MASK    0x7C
-#define USTAT_DEPTH   4
+#define USTAT_EP2_IN (2 << 3 | 0x04)
+#define USTAT_MASK 0x7C
+#define USTAT_DEPTH 4
 
-#define UEP_EPHSHK   0x10
+#define UEP_EPHSHK 0x10
 #define UEP_EPCONDIS 0x08
-#define UEP_EPOUTEN  0x04
-#define UEP_EPINEN   0x02
-#define UEP_EPSTALL  0x01
+#define UEP_EPOUTEN 0x04
+#define UEP_EPINEN 0x02
+#define UEP_EPSTALL 0x01
 
 /* BDnSTAT. */
-#define BD_UOWN      0x80
-#define BD_DTS       0x40
-#define BD_DTSEN     0x08
-#define BD_BSTALL    0x04
-#define BD_PID       0x3C
+#define BD_UOWN 0x80
+#define BD_DTS 0x40
+#define BD_DTSEN 0x08
+#define BD_BSTALL 0x04
+#define BD_PID 0x3C
 #define BD_PID_SETUP (0x0D << 2)
 
 #define PIR2_USBIF 0x20
@@ -76,14 +76,14 @@ struct buffer_descriptor {
 };
 
 #define BD_EP0_OUT 0
-#define BD_EP0_IN  1
-#define BD_EP1_IN  3
+#define BD_EP0_IN 1
+#define BD_EP1_IN 3
 #define BD_EP2_OUT 4
-#define BD_EP2_IN  5
-#define BD_COUNT   6
+#define BD_EP2_IN 5
+#define BD_COUNT 6
 
 #define USB_SERIAL_DESCRIPTOR_LENGTH 18
-#define LINE_CODING_LENGTH           7
+#define LINE_CODING_LENGTH 7
 
 extern volatile struct buffer_descriptor usb_bd[BD_COUNT];
 extern volatile uint8_t usb_ep0_out[EP0_SIZE];
@@ -93,45 +93,47 @@ extern volatile uint8_t usb_line_coding[LINE_CODING_LENGTH];
 
 /* Device states of USB 2.0, section 9.1. Suspended is the bit SUSPND in UCON
  * beside any of them. */
-#define USB_DETACHED   0
-#define USB_DEFAULT    1
-#define USB_ADDRESS    2
+#define USB_DETACHED 0
+#define USB_DEFAULT 1
+#define USB_ADDRESS 2
 #define USB_CONFIGURED 3
 
 /* One bit per endpoint in `halted`, `armed` and `toggle`. */
-#define EP1_IN_BIT  0x01
+#define EP1_IN_BIT 0x01
 #define EP2_OUT_BIT 0x02
-#define EP2_IN_BIT  0x04
+#define EP2_IN_BIT 0x04
 #define EP_ALL_BITS 0x07
 
 /* The driver's variables. Not a struct: SDCC tests single bits of a struct
  * member in the wrong bank. */
-extern volatile uint8_t usb_state; /* USB_DETACHED ... */
-extern volatile uint8_t usb_vbus_ms; /* how long VBUS has disagreed with `state` */
-extern volatile uint8_t usb_new_address; /* SET_ADDRESS waiting for its status stage */
-extern volatile uint8_t usb_stage; /* of the control transfer, STAGE_... */
-extern volatile uint8_t usb_source; /* where its data come from, SOURCE_... */
-extern volatile uint8_t usb_left; /* bytes of its data stage still to send */
-extern volatile uint8_t usb_ends_short; /* the data stage needs a short packet at its end */
-extern volatile uint8_t usb_in_stat; /* BDnSTAT of the last EP0 IN packet */
-extern volatile uint16_t usb_next; /* address of the next byte to send */
-extern volatile uint8_t usb_halted; /* endpoints with ENDPOINT_HALT */
-extern volatile uint8_t usb_armed; /* endpoints whose buffer the engine owns */
-extern volatile uint8_t usb_toggle; /* set = next packet is DATA1 */
-extern volatile uint8_t usb_notify; /* a SERIAL_STATE notification waits to be sent */
-extern volatile uint8_t usb_line_state; /* SET_CONTROL_LINE_STATE: bit 0 DTR, bit 1 RTS */
-extern volatile uint8_t usb_received; /* bytes in cdc_packet, 0 = none; main loop clears */
-extern volatile uint8_t usb_sending; /* bytes of cdc_reply under way; main loop sets */
+extern volatile uint8_t usb_state;       /* USB_DETACHED ... */
+extern volatile uint8_t usb_vbus_ms;     /* VBUS disagrees with it for, ms */
+extern volatile uint8_t usb_new_address; /* until the status stage, 0xFF none */
+extern volatile uint8_t usb_stage;       /* of the control transfer */
+extern volatile uint8_t usb_source;      /* of its data, SOURCE_... */
+extern volatile uint8_t usb_left;        /* bytes of it still to send */
+extern volatile uint8_t usb_ends_short;  /* a short packet is still due */
+extern volatile uint8_t usb_in_stat;     /* BDnSTAT of the last EP0 IN */
+extern volatile uint16_t usb_next;       /* address of the next byte to send */
+extern volatile uint8_t usb_halted;      /* endpoints with ENDPOINT_HALT */
+extern volatile uint8_t usb_armed;       /* endpoints the engine owns */
+extern volatile uint8_t usb_toggle;      /* set = next packet is DATA1 */
+extern volatile uint8_t usb_notify;      /* SERIAL_STATE waits to be sent */
+extern volatile uint8_t usb_line_state;  /* bit 0 DTR, bit 1 RTS */
+
+/* Notes between the main loop and the interrupt, see cdc.c. */
+extern volatile uint8_t usb_received; /* bytes in cdc_packet; main clears */
+extern volatile uint8_t usb_sending;  /* bytes of cdc_reply; main sets */
 
 /* Where the data stage of a control read comes from (usb_source). */
 #define SOURCE_BUFFER 0 /* already in usb_ep0_in */
-#define SOURCE_FLASH  1 /* a table at usb_next */
-#define SOURCE_RAM    2 /* bytes in RAM at usb_next */
+#define SOURCE_FLASH 1  /* a table at usb_next */
+#define SOURCE_RAM 2    /* bytes in RAM at usb_next */
 
 /* Stages of a control transfer (usb_stage). */
-#define STAGE_IDLE      0 /* next is a SETUP */
-#define STAGE_DATA_IN   1 /* data to the host; its OUT ends the transfer */
-#define STAGE_DATA_OUT  2 /* data from the host */
+#define STAGE_IDLE 0      /* next is a SETUP */
+#define STAGE_DATA_IN 1   /* data to the host; its OUT ends the transfer */
+#define STAGE_DATA_OUT 2  /* data from the host */
 #define STAGE_STATUS_IN 3 /* our empty packet ends the transfer */
 
 /* ---- control.c: endpoint 0, transfers ----------------------------------- */

@@ -38,7 +38,7 @@
  * from VBUS. A self-powered board may draw less than it declares, so one
  * number serves both.
  */
-#define USB_SELF_POWERED   1
+#define USB_SELF_POWERED 1
 #define USB_BUS_CURRENT_MA 100
 
 /* ---- VBUS sense ---------------------------------------------------------

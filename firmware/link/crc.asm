@@ -14,8 +14,8 @@
 ; PRODH and the low byte of x << 5 in PRODL.
 ;
 ; SDCC's calling convention for this port: arguments on the software stack, the
-; first nearest to FSR1 and its low byte first; the result is in PRODL:WREG. FSR0
-; and PROD are free for the callee.
+; first nearest to FSR1 and its low byte first; the result is in PRODL:WREG.
+; FSR0 and PROD are free for the callee.
 
         include <p18f4550.inc>
         radix   dec

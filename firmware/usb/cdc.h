@@ -53,7 +53,8 @@
 
 /* Sets up memory and registers and reads the serial number from EEPROM. Main,
  * once, before GIEL is set; takes 60 us. Leaves the engine off: usb_tick()
- * turns it on when there is a cable. Enables its own interrupt at low priority. */
+ * turns it on when there is a cable. Enables its own interrupt at low
+ * priority. */
 void usb_init(void);
 
 /* Serves the engine: at most one transaction, bus reset, suspend, resume. Low

@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Repair what SDCC's PIC16 port is known to write wrong, refuse what it must not.
+
+- A bit test or change on a byte inside a variable, `BTFSC (_rate + 1), 7`, comes
+  without the flag that says "banked", although the bank has been selected just
+  before; the assembler then silently takes the access bank. The flag is added.
+- An initialised variable would need a copying start-up, which this firmware does
+  not have. It is refused.
+
+usage: repair_assembly.py FILE.asm [FILE.asm ...]      (changed in place)
+"""
+
+import re
+import sys
+from pathlib import Path
+
+BIT_WITHOUT_BANK = re.compile(
+    r"^(\s*(?:BTFSC|BTFSS|BTG|BSF|BCF)\s+\(_\w+\s*\+\s*\d+\),\s*\d+)\s*$", re.IGNORECASE
+)
+INITIALISED = re.compile(r"^\w*\s+idata\b", re.IGNORECASE)
+
+
+def repair(source: str) -> str:
+    """Return the assembly text with the missing bank flags added.
+
+    Raises ValueError when the text has an initialised variable.
+    """
+    lines = []
+    for number, line in enumerate(source.splitlines(), 1):
+        if INITIALISED.match(line):
+            raise ValueError(f"{number}: initialised variable; set it in the room's init function")
+        lines.append(BIT_WITHOUT_BANK.sub(r"\1, B", line))
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Repair every file named, in place."""
+    for name in sys.argv[1:]:
+        path = Path(name)
+        try:
+            path.write_text(repair(path.read_text()))
+        except ValueError as fault:
+            path.unlink()
+            sys.exit(f"{name}:{fault}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,193 @@
+/* Step stream: queue between the main loop and the step interrupt.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "stream.h"
+#include "sfr.h" /* CCP2, Timer 1, ports */
+
+#define CCP2IE_MASK 0x01 /* PIE2 */
+#define CCP2IF_MASK 0x01 /* PIR2 */
+
+#define CCP_COMPARE_INTERRUPT 0x0A /* CCP2CON: match raises CCP2IF only */
+#define TIMER1_FREE_RUNNING 0x81   /* T1CON: 16-bit access, 12 MHz, on */
+#define START_DELAY_H 0x2E         /* 0x2EE0 cycles = 1 ms */
+#define START_DELAY_L 0xE0
+
+extern volatile uint8_t stream_next;
+extern volatile uint8_t speed_head;
+extern volatile uint8_t speed_tail;
+extern volatile uint8_t speed_ring[32];
+extern volatile uint8_t step_ring[256];
+extern volatile uint8_t coils_x[8];
+extern volatile uint8_t coils_z[8];
+extern volatile uint8_t pattern_x;
+extern volatile uint8_t pattern_z;
+extern volatile uint8_t phase_x;
+extern volatile uint8_t phase_z;
+extern volatile uint8_t phase_step;
+
+uint8_t stream_low;
+
+/*
+ * Coil patterns in forward order, phase 1 = bit 0. Even entries have two
+ * phases on, odd ones one: every second entry from an even place is the full
+ * step sequence 5, 9, 10, 6, from an odd place the wave sequence 1, 8, 2, 4,
+ * and all eight are half steps.
+ */
+static __code const uint8_t forward[8] = {5, 1, 9, 8, 10, 2, 6, 4};
+
+void stream_init(void)
+{
+    CCP2CON = CCP_COMPARE_INTERRUPT;
+    T1CON = TIMER1_FREE_RUNNING;
+    IPR2 |= CCP2IE_MASK;
+}
+
+void stream_set_coils(uint8_t mode, uint8_t invert_x, uint8_t invert_z)
+{
+    uint8_t i;
+
+    for (i = 0; i < 8; i++) {
+        uint8_t backward = (8 - i) & 7;
+
+        coils_x[i] = forward[invert_x ? backward : i];
+        coils_z[i] = forward[invert_z ? backward : i];
+    }
+    phase_step = mode == 2 ? 1 : 2;
+    phase_x = mode == 1 ? 1 : 0;
+    phase_z = phase_x;
+}
+
+void stream_coils_on(void)
+{
+    pattern_x = coils_x[phase_x];
+    pattern_z = coils_z[phase_z];
+    LATD = pattern_x;
+    LATB = pattern_z;
+}
+
+void stream_coils_off(void)
+{
+    pattern_x = 0;
+    pattern_z = 0;
+    LATD = 0;
+    LATB = 0;
+}
+
+uint8_t stream_fill(void)
+{
+    return (uint8_t)(stream_head - stream_tail) >> 1;
+}
+
+uint8_t stream_room(void)
+{
+    return STREAM_ENTRIES - stream_fill();
+}
+
+void stream_push(uint8_t flags, uint8_t stretch)
+{
+    uint8_t head = stream_head;
+
+    step_ring[head] = flags;
+    head++;
+    step_ring[head] = stretch;
+    head++;
+    stream_head = head;
+}
+
+uint8_t stream_speeds_free(void)
+{
+    return STREAM_SPEEDS - ((uint8_t)((speed_head - speed_tail) & 0x1F) >> 2);
+}
+
+void stream_push_speed(uint32_t period, uint8_t mark)
+{
+    uint8_t head = speed_head;
+
+    speed_ring[head] = (uint8_t)period;
+    speed_ring[head + 1] = (uint8_t)(period >> 8);
+    speed_ring[head + 2] = (uint8_t)(period >> 16);
+    speed_ring[head + 3] = mark;
+    speed_head = (head + 4) & 0x1F;
+}
+
+void stream_thaw(void)
+{
+    uint8_t low = TMR1L; /* latches TMR1H */
+    uint8_t high = TMR1H;
+
+    high += START_DELAY_H;
+    if ((uint8_t)(low + START_DELAY_L) < low) {
+        high++;
+    }
+    CCPR2H = high;
+    CCPR2L = low + START_DELAY_L;
+    PIR2 &= (uint8_t)~CCP2IF_MASK;
+    stream_flags |= STREAM_ACTIVE;
+    PIE2 |= CCP2IE_MASK;
+}
+
+void stream_start(void)
+{
+    stream_low = STREAM_ENTRIES;
+    stream_flags = 0;
+    stream_thaw();
+}
+
+void stream_freeze(void)
+{
+    PIE2 &= (uint8_t)~CCP2IE_MASK;
+}
+
+/* The interrupt has turned the phases of the step to come already; a step
+   that is never made must not leave them ahead of the rotor. */
+static void forget_next_step(void)
+{
+    uint8_t next = stream_next;
+
+    if (next & STREAM_STEP_X) {
+        phase_x += next & STREAM_X_NEGATIVE ? phase_step : -phase_step;
+        phase_x &= 7;
+        pattern_x = coils_x[phase_x];
+    }
+    if (next & STREAM_STEP_Z) {
+        phase_z += next & STREAM_Z_NEGATIVE ? phase_step : -phase_step;
+        phase_z &= 7;
+        pattern_z = coils_z[phase_z];
+    }
+}
+
+void stream_abort(void)
+{
+    PIE2 &= (uint8_t)~CCP2IE_MASK;
+    forget_next_step();
+    stream_flags = 0;
+    stream_next = 0;
+    stream_tail = stream_head;
+    speed_tail = speed_head;
+}
+
+/* The interrupt may change a position between two of its bytes, but not
+   twice in the few cycles between two readings: equal readings are true. */
+int16_t stream_position_x(void)
+{
+    int16_t first;
+    int16_t second = position_x;
+
+    do {
+        first = second;
+        second = position_x;
+    } while (first != second);
+    return first;
+}
+
+int16_t stream_position_z(void)
+{
+    int16_t first;
+    int16_t second = position_z;
+
+    do {
+        first = second;
+        second = position_z;
+    } while (first != second);
+    return first;
+}

@@ -1,0 +1,291 @@
+/* The machine's states and events.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "lathe/machine.h"
+#include "lathe/guard.h"      /* trips */
+#include "lathe/homing.h"     /* homing phases */
+#include "lathe/part_check.h" /* before every run */
+#include "lathe/passes.h"     /* moves of a part */
+#include "link/protocol.h"    /* states, alarms, errors */
+#include "motion/motion.h"    /* chains */
+#include "motion/stream.h"    /* freeze, positions */
+#include "panel/inputs.h"     /* buttons */
+#include "store/parts.h"      /* selected part */
+#include "store/settings.h"   /* settings */
+
+uint8_t machine_state;
+uint8_t machine_alarm;
+uint8_t machine_alarm_detail;
+uint8_t machine_homed;
+uint8_t machine_slot;
+
+static uint8_t finished;        /* the last run came to its end */
+static uint32_t permille_steps; /* tool steps of a thousandth of the run */
+
+static void arm(void)
+{
+    uint8_t inputs = 0;
+
+    if (settings[SETTING_ESTOP_FITTED]) {
+        inputs |= INPUT_ESTOP;
+    }
+    if (machine_homed) {
+        inputs |= INPUT_LIMITS;
+    }
+    guard_armed = inputs;
+}
+
+static void raise(uint8_t alarm, uint8_t detail)
+{
+    motion_cancel();
+    guard_stop_at(0, 0);
+    machine_state = STATE_ALARM;
+    machine_alarm = alarm;
+    machine_alarm_detail = detail;
+    machine_homed = 0;
+    arm();
+}
+
+void machine_apply_settings(void)
+{
+    stream_set_coils((uint8_t)settings[SETTING_COIL_MODE],
+                     (uint8_t)settings[SETTING_INVERT_X],
+                     (uint8_t)settings[SETTING_INVERT_Z]);
+    arm();
+}
+
+void machine_init(uint8_t settings_good)
+{
+    motion_cancel();
+    machine_slot = SLOT_NONE;
+    machine_apply_settings();
+    if (!settings_good) {
+        raise(ALARM_SETTINGS_LOST, 0);
+    }
+}
+
+uint8_t machine_quiet(void)
+{
+    return machine_state == STATE_IDLE || machine_state == STATE_ALARM;
+}
+
+/* Why no motion can start now, or ERROR_OK. */
+static uint8_t not_ready(void)
+{
+    if (machine_state == STATE_ALARM) {
+        return ERROR_ALARM;
+    }
+    return machine_state == STATE_IDLE ? ERROR_OK : ERROR_BUSY;
+}
+
+uint8_t machine_home(void)
+{
+    uint8_t error = not_ready();
+
+    if (error == ERROR_OK) {
+        machine_state = STATE_HOMING;
+        machine_homed = 0;
+        arm();
+        homing_begin();
+    }
+    return error;
+}
+
+uint8_t machine_run(uint8_t slot)
+{
+    uint8_t error = not_ready();
+
+    if (error != ERROR_OK) {
+        return error;
+    }
+    if (!machine_homed) {
+        return ERROR_NOT_HOMED;
+    }
+    if (slot == SLOT_NONE) {
+        slot = parts_selected();
+    }
+    if (!parts_present(slot)) {
+        return ERROR_NO_PART;
+    }
+    if (!parts_intact(slot)) {
+        return ERROR_CRC_MISMATCH;
+    }
+    if (part_check(slot, parts_length)) {
+        return ERROR_INVALID_PART;
+    }
+    machine_slot = slot;
+    machine_state = STATE_RUNNING;
+    finished = 0;
+    passes_begin(slot);
+    permille_steps = passes_total_steps / PERMILLE_DONE + 1;
+    motion_begin();
+    return ERROR_OK;
+}
+
+uint8_t machine_hold(void)
+{
+    if (machine_state == STATE_HOLD) {
+        return ERROR_OK;
+    }
+    if (machine_state != STATE_RUNNING) {
+        return ERROR_NOT_RUNNING;
+    }
+    stream_freeze();
+    machine_state = STATE_HOLD;
+    return ERROR_OK;
+}
+
+uint8_t machine_resume(void)
+{
+    if (machine_state == STATE_RUNNING) {
+        return ERROR_OK;
+    }
+    if (machine_state != STATE_HOLD) {
+        return ERROR_NOT_RUNNING;
+    }
+    machine_state = STATE_RUNNING;
+    if (stream_flags & STREAM_ACTIVE) {
+        stream_thaw();
+    }
+    return ERROR_OK;
+}
+
+uint8_t machine_stop(void)
+{
+    switch (machine_state) {
+    case STATE_HOMING:
+        raise(ALARM_STOPPED_HOMING, homing_axis);
+        break;
+    case STATE_RUNNING:
+    case STATE_HOLD:
+        motion_cancel();
+        machine_state = STATE_IDLE;
+        break;
+    default:
+        break;
+    }
+    return ERROR_OK;
+}
+
+uint8_t machine_reset(void)
+{
+    if (machine_state != STATE_ALARM) {
+        return ERROR_OK;
+    }
+    if (guard_armed & inputs_state & INPUT_ESTOP) {
+        return ERROR_ESTOP;
+    }
+    guard_clear();
+    if (machine_alarm == ALARM_SETTINGS_LOST) {
+        settings_save();
+    }
+    machine_state = STATE_IDLE;
+    machine_alarm = ALARM_NONE;
+    machine_alarm_detail = 0;
+    return ERROR_OK;
+}
+
+uint8_t machine_zero(uint8_t axis, int16_t value)
+{
+    int16_t zero;
+
+    if (!machine_quiet()) {
+        return ERROR_BUSY;
+    }
+    if (!machine_homed) {
+        return ERROR_NOT_HOMED;
+    }
+    if (axis > AXIS_Z || value > POSITION_MAX || value < -POSITION_MAX) {
+        return ERROR_OUT_OF_RANGE;
+    }
+    zero = axis == AXIS_X ? stream_position_x() : stream_position_z();
+    return settings_set(axis == AXIS_X ? SETTING_ZERO_X : SETTING_ZERO_Z,
+                        zero - value);
+}
+
+uint16_t machine_permille(void)
+{
+    uint16_t permille;
+
+    if (finished) {
+        return PERMILLE_DONE;
+    }
+    if (machine_state != STATE_RUNNING && machine_state != STATE_HOLD) {
+        return 0;
+    }
+    permille = (uint16_t)(motion_made() / permille_steps);
+    return permille < PERMILLE_DONE ? permille : PERMILLE_DONE - 1;
+}
+
+/* Names the alarm for what the guard has stopped. */
+static void serve_trip(void)
+{
+    if (guard_tripped & INPUT_ESTOP) {
+        raise(ALARM_ESTOP, 0);
+    } else if (guard_tripped & INPUT_LIMIT_X) {
+        raise(ALARM_LIMIT, AXIS_X);
+    } else if (guard_tripped & INPUT_LIMIT_Z) {
+        raise(ALARM_LIMIT, AXIS_Z);
+    } else {
+        raise(ALARM_STREAM_DRY, 0);
+    }
+    guard_tripped = 0;
+}
+
+static void serve_buttons(void)
+{
+    uint8_t presses = inputs_take_presses();
+
+    if (presses & INPUT_STOP) {
+        if (machine_state == STATE_ALARM) {
+            machine_reset();
+        } else {
+            machine_stop();
+        }
+    } else if (presses & INPUT_HOLD) {
+        machine_hold();
+    } else if (presses & INPUT_RUN) {
+        if (machine_state == STATE_HOLD) {
+            machine_resume();
+        } else if (machine_homed) {
+            machine_run(SLOT_NONE);
+        } else {
+            machine_home();
+        }
+    }
+}
+
+static void serve_homing(void)
+{
+    uint8_t result = homing_poll();
+
+    if (result == HOMING_DONE) {
+        machine_homed = 1;
+        machine_state = STATE_IDLE;
+        arm();
+    } else if (result != 0) {
+        raise(result, homing_axis);
+    }
+}
+
+void machine_poll(void)
+{
+    if (guard_tripped) {
+        serve_trip();
+    }
+    serve_buttons();
+    if (machine_state == STATE_HOMING) {
+        serve_homing();
+    } else if (machine_state == STATE_RUNNING && !motion_busy()) {
+        finished = 1;
+        machine_state = STATE_IDLE;
+    }
+    if (machine_state == STATE_HOMING || machine_state == STATE_RUNNING) {
+        motion_poll();
+    }
+}
+
+uint8_t motion_source(void)
+{
+    return machine_state == STATE_HOMING ? homing_source() : passes_source();
+}

@@ -1,0 +1,60 @@
+/*
+ * The machine: which state it is in and what every event does to it.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ *
+ *   state     RUN          HOLD    STOP           part/homing ends  trip
+ *   IDLE      home, or     -       -              -                 ALARM
+ *             start part
+ *   HOMING    -            -       ALARM          IDLE, homed       ALARM
+ *   RUNNING   -            HOLD    IDLE           IDLE              ALARM
+ *   HOLD      RUNNING      -       IDLE           -                 ALARM
+ *   ALARM     -            -       IDLE           -                 ALARM
+ *
+ * RUN and STOP are buttons; the commands HOME, RUN and RESUME are the three
+ * meanings of the first, STOP and RESET those of the second. A trip is the
+ * emergency stop, a limit switch while homed, or a step stream that ran dry;
+ * it makes the position untrusted. ALARM ends by the command RESET or the
+ * STOP button, when its cause is gone; then IDLE, not homed. Acknowledging
+ * SETTINGS_LOST stores the defaults.
+ *
+ * Main loop only. Functions that return a number return ERROR_OK or the
+ * ERROR_... that says why not; then nothing has changed.
+ */
+#ifndef MACHINE_H
+#define MACHINE_H
+
+#include <stdint.h>
+
+extern uint8_t machine_state;        /* STATE_... */
+extern uint8_t machine_alarm;        /* ALARM_... */
+extern uint8_t machine_alarm_detail; /* axis, where one is concerned */
+extern uint8_t machine_homed;
+extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
+
+/* Starts in IDLE, or in ALARM when the settings were lost. */
+void machine_init(uint8_t settings_good);
+
+/* Serves trips, buttons, homing and run; every turn of the main loop. */
+void machine_poll(void);
+
+uint8_t machine_home(void);
+uint8_t machine_run(uint8_t slot);
+uint8_t machine_hold(void);
+uint8_t machine_resume(void);
+uint8_t machine_stop(void);
+uint8_t machine_reset(void);
+
+/* True when flash and settings may be written: nothing moves or could. */
+uint8_t machine_quiet(void);
+
+/* The tool stands at this part coordinate: moves and stores part zero. */
+uint8_t machine_zero(uint8_t axis, int16_t value);
+
+/* Takes settings that motion depends on into use. */
+void machine_apply_settings(void);
+
+/* Progress of the run, 0..1000. */
+uint16_t machine_permille(void);
+
+#endif

@@ -1,0 +1,63 @@
+/* Switches and buttons, sampled every millisecond.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "panel/inputs.h"
+#include "board.h" /* masks */
+#include "sfr.h"   /* ports */
+
+volatile uint8_t inputs_state;
+
+static uint8_t count_low;
+static uint8_t count_high;
+static uint8_t seen; /* state at the last inputs_take_presses() */
+
+static uint8_t raw_levels(void)
+{
+    uint8_t b = PORTB;
+    uint8_t d = PORTD;
+    uint8_t raw = 0;
+
+    if (b & LIMIT_X_MASK) {
+        raw |= INPUT_LIMIT_X;
+    }
+    if (b & LIMIT_Z_MASK) {
+        raw |= INPUT_LIMIT_Z;
+    }
+    if (d & ESTOP_SENSE_MASK) {
+        raw |= INPUT_ESTOP;
+    }
+    if (!(d & BUTTON_RUN_MASK)) {
+        raw |= INPUT_RUN;
+    }
+    if (!(d & BUTTON_HOLD_MASK)) {
+        raw |= INPUT_HOLD;
+    }
+    if (!(d & BUTTON_STOP_MASK)) {
+        raw |= INPUT_STOP;
+    }
+    return raw;
+}
+
+void inputs_init(void)
+{
+    inputs_state = raw_levels();
+    seen = inputs_state;
+}
+
+void inputs_tick(void)
+{
+    uint8_t changed = raw_levels() ^ inputs_state;
+
+    count_low = (uint8_t) ~(count_low & changed);
+    count_high = count_low ^ (count_high & changed);
+    inputs_state ^= changed & count_low & count_high;
+}
+
+uint8_t inputs_take_presses(void)
+{
+    uint8_t now = inputs_state;
+    uint8_t presses = now & (uint8_t)~seen;
+
+    seen = now;
+    return presses;
+}

@@ -1,0 +1,59 @@
+/* Status LED patterns.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "panel/led.h"
+#include "board.h"         /* LED_STATUS_MASK */
+#include "lathe/machine.h" /* state, alarm */
+#include "link/protocol.h" /* STATE_..., ALARM_NONE */
+#include "sfr.h"           /* LATC */
+#include "tick.h"          /* tick_now */
+
+#define STARTUP_MS 2000
+#define FLASH_MS 256 /* one flash of an alarm code and one gap */
+#define PAUSE_FLASHES 6
+
+static uint8_t started; /* the start-up light is over */
+static uint16_t code_began;
+
+static uint8_t alarm_lit(uint16_t now)
+{
+    uint16_t elapsed = now - code_began;
+    uint8_t half = (uint8_t)(elapsed / (FLASH_MS / 2));
+    uint8_t flash = half >> 1;
+
+    if (flash >= machine_alarm + PAUSE_FLASHES) {
+        code_began = now;
+    }
+    return flash < machine_alarm && !(half & 1);
+}
+
+void led_poll(void)
+{
+    uint16_t now = tick_now();
+    uint8_t lit;
+
+    if (!started && now < STARTUP_MS) {
+        lit = 1;
+    } else {
+        started = 1;
+        switch (machine_state) {
+        case STATE_IDLE:
+            lit = machine_homed || (now & 0x200);
+            break;
+        case STATE_HOLD:
+            lit = (now & 0x80) != 0;
+            break;
+        case STATE_ALARM:
+            lit = alarm_lit(now);
+            break;
+        default:
+            lit = (now & 0x1C0) != 0;
+            break;
+        }
+    }
+    if (lit) {
+        LATC |= LED_STATUS_MASK;
+    } else {
+        LATC &= (uint8_t)~LED_STATUS_MASK;
+    }
+}

@@ -1,0 +1,363 @@
+/* Commands of the link.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "link/commands.h"
+#include "lathe/machine.h"    /* state, actions */
+#include "lathe/part_check.h" /* upload, max rate */
+#include "lathe/passes.h"     /* progress */
+#include "link/frame.h"       /* request, response */
+#include "link/protocol.h"    /* numbers */
+#include "motion/motion.h"    /* dead steps */
+#include "motion/stream.h"    /* positions */
+#include "panel/inputs.h"     /* switches, buttons */
+#include "store/eeprom.h"     /* serial number */
+#include "store/flash.h"      /* reading */
+#include "store/parts.h"      /* parts */
+#include "store/settings.h"   /* settings */
+#include "tick.h"             /* uptime */
+
+uint8_t commands_reset_cause;
+
+/* Shortest and longest payload of each command; 0 ends the table. */
+/* clang-format off */
+static __code const uint8_t lengths[] = {
+    COMMAND_HELLO, HELLO_REQUEST_SIZE, HELLO_REQUEST_SIZE,
+    COMMAND_STATUS, STATUS_REQUEST_SIZE, STATUS_REQUEST_SIZE,
+    COMMAND_HOME, HOME_REQUEST_SIZE, HOME_REQUEST_SIZE,
+    COMMAND_RUN, RUN_REQUEST_SIZE, RUN_REQUEST_SIZE,
+    COMMAND_HOLD, HOLD_REQUEST_SIZE, HOLD_REQUEST_SIZE,
+    COMMAND_RESUME, RESUME_REQUEST_SIZE, RESUME_REQUEST_SIZE,
+    COMMAND_STOP, STOP_REQUEST_SIZE, STOP_REQUEST_SIZE,
+    COMMAND_RESET, RESET_REQUEST_SIZE, RESET_REQUEST_SIZE,
+    COMMAND_ZERO, ZERO_REQUEST_SIZE, ZERO_REQUEST_SIZE,
+    COMMAND_UPLOAD_BEGIN, UPLOAD_BEGIN_REQUEST_SIZE, UPLOAD_BEGIN_REQUEST_SIZE,
+    COMMAND_UPLOAD_DATA, UPLOAD_DATA_REQUEST_MIN, UPLOAD_DATA_REQUEST_MAX,
+    COMMAND_UPLOAD_COMMIT, UPLOAD_COMMIT_REQUEST_SIZE,
+    UPLOAD_COMMIT_REQUEST_SIZE,
+    COMMAND_PART_INFO, PART_INFO_REQUEST_SIZE, PART_INFO_REQUEST_SIZE,
+    COMMAND_PART_READ, PART_READ_REQUEST_SIZE, PART_READ_REQUEST_SIZE,
+    COMMAND_PART_SELECT, PART_SELECT_REQUEST_SIZE, PART_SELECT_REQUEST_SIZE,
+    COMMAND_PART_DELETE, PART_DELETE_REQUEST_SIZE, PART_DELETE_REQUEST_SIZE,
+    COMMAND_SETTING_GET, SETTING_GET_REQUEST_SIZE, SETTING_GET_REQUEST_SIZE,
+    COMMAND_SETTING_SET, SETTING_SET_REQUEST_SIZE, SETTING_SET_REQUEST_SIZE,
+    0};
+/* clang-format on */
+
+static void put_u16(uint8_t at, uint16_t value)
+{
+    frame_response[at] = (uint8_t)value;
+    frame_response[at + 1] = (uint8_t)(value >> 8);
+}
+
+/* The wire has 32 bits where the chip has 16. */
+static void put_i32(uint8_t at, int16_t value)
+{
+    put_u16(at, (uint16_t)value);
+    put_u16(at + 2, value < 0 ? 0xFFFF : 0);
+}
+
+static uint16_t get_u16(uint8_t at)
+{
+    return frame_payload[at] | (uint16_t)(frame_payload[at + 1] << 8);
+}
+
+/* A 32-bit value that does not fit comes as the largest or smallest number,
+   which is out of every range. */
+static int16_t get_i16(uint8_t at)
+{
+    int16_t low = (int16_t)get_u16(at);
+    int16_t high = (int16_t)get_u16(at + 2);
+
+    if (high != (low < 0 ? -1 : 0)) {
+        return high < 0 ? -32767 - 1 : 32767;
+    }
+    return low;
+}
+
+static void put_uptime(void)
+{
+    uint32_t uptime = tick_uptime_ms();
+
+    put_u16(STATUS_RESPONSE_UPTIME_MS_AT, (uint16_t)uptime);
+    put_u16(STATUS_RESPONSE_UPTIME_MS_AT + 2, (uint16_t)(uptime >> 16));
+}
+
+static uint8_t hello(void)
+{
+    uint8_t i;
+
+    frame_response[HELLO_RESPONSE_PROTOCOL_AT] = PROTOCOL_VERSION;
+    frame_response[HELLO_RESPONSE_FIRMWARE_MAJOR_AT] = FIRMWARE_VERSION_MAJOR;
+    frame_response[HELLO_RESPONSE_FIRMWARE_MINOR_AT] = FIRMWARE_VERSION_MINOR;
+    frame_response[HELLO_RESPONSE_FIRMWARE_PATCH_AT] = FIRMWARE_VERSION_PATCH;
+    frame_response[HELLO_RESPONSE_SLOTS_AT] = PART_SLOTS;
+    put_u16(HELLO_RESPONSE_IMAGE_MAX_AT, PART_IMAGE_MAX);
+    /* Six settings in the order of the response: step sizes, travels,
+       zeros. */
+    for (i = 0; i < 6; i++) {
+        put_i32(HELLO_RESPONSE_STEP_X_NM_AT + 4 * i, settings[i]);
+    }
+    for (i = 0; i < SERIAL_LENGTH; i++) {
+        frame_response[HELLO_RESPONSE_SERIAL_AT + i] = USB_SERIAL_CHARACTER(i);
+    }
+    put_u16(HELLO_RESPONSE_MAX_RATE_AT, part_check_max_rate());
+    return HELLO_RESPONSE_SIZE;
+}
+
+static uint8_t status_flags(void)
+{
+    uint8_t inputs = inputs_state;
+    uint8_t flags = 0;
+
+    if (machine_homed) {
+        flags |= STATUS_FLAG_HOMED;
+    }
+    if (inputs & INPUT_LIMIT_X) {
+        flags |= STATUS_FLAG_SWITCH_X;
+    }
+    if (inputs & INPUT_LIMIT_Z) {
+        flags |= STATUS_FLAG_SWITCH_Z;
+    }
+    if (inputs & INPUT_ESTOP) {
+        flags |= STATUS_FLAG_ESTOP;
+    }
+    if (inputs & INPUT_RUN) {
+        flags |= STATUS_FLAG_BUTTON_RUN;
+    }
+    if (inputs & INPUT_HOLD) {
+        flags |= STATUS_FLAG_BUTTON_HOLD;
+    }
+    if (inputs & INPUT_STOP) {
+        flags |= STATUS_FLAG_BUTTON_STOP;
+    }
+    if (stream_flags & STREAM_ACTIVE) {
+        flags |= STATUS_FLAG_MOTION;
+    }
+    return flags;
+}
+
+static uint8_t status(void)
+{
+    uint8_t running =
+        machine_state == STATE_RUNNING || machine_state == STATE_HOLD;
+
+    frame_response[STATUS_RESPONSE_STATE_AT] = machine_state;
+    frame_response[STATUS_RESPONSE_ALARM_AT] = machine_alarm;
+    frame_response[STATUS_RESPONSE_ALARM_DETAIL_AT] = machine_alarm_detail;
+    frame_response[STATUS_RESPONSE_FLAGS_AT] = status_flags();
+    put_i32(STATUS_RESPONSE_X_AT, stream_position_x());
+    put_i32(STATUS_RESPONSE_Z_AT, stream_position_z());
+    put_u16(STATUS_RESPONSE_DEAD_X_AT, motion_dead_x);
+    put_u16(STATUS_RESPONSE_DEAD_Z_AT, motion_dead_z);
+    frame_response[STATUS_RESPONSE_SLOT_AT] =
+        running ? machine_slot : parts_selected();
+    frame_response[STATUS_RESPONSE_OPERATION_AT] =
+        running ? passes_operation() : 0;
+    frame_response[STATUS_RESPONSE_OPERATIONS_AT] =
+        running ? passes_operations : 0;
+    frame_response[STATUS_RESPONSE_PASS_NUMBER_AT] =
+        running ? passes_pass() : 0;
+    frame_response[STATUS_RESPONSE_PASSES_AT] = running ? passes_passes() : 0;
+    put_u16(STATUS_RESPONSE_PERMILLE_AT, machine_permille());
+    frame_response[STATUS_RESPONSE_RESET_CAUSE_AT] = commands_reset_cause;
+    put_u16(STATUS_RESPONSE_BAD_FRAMES_AT, frame_bad_frames);
+    put_uptime();
+    frame_response[STATUS_RESPONSE_STREAM_LOW_AT] = stream_low;
+    return STATUS_RESPONSE_SIZE;
+}
+
+static uint8_t upload_commit(void)
+{
+    uint8_t error = parts_upload_finish();
+    uint8_t reason;
+
+    if (error == ERROR_OK) {
+        reason = part_check(parts_upload_slot, parts_upload_length);
+        if (reason != 0) {
+            frame_response[0] = ERROR_INVALID_PART;
+            frame_response[1] = reason;
+            frame_response[2] = part_check_operation;
+            return 3;
+        }
+        error = parts_upload_accept();
+    }
+    frame_response[0] = error;
+    if (error != ERROR_OK) {
+        return 1;
+    }
+    frame_response[UPLOAD_COMMIT_RESPONSE_SLOT_AT] = parts_upload_slot;
+    put_u16(UPLOAD_COMMIT_RESPONSE_CRC_AT, parts_crc);
+    return UPLOAD_COMMIT_RESPONSE_SIZE;
+}
+
+static uint8_t part_info(void)
+{
+    uint8_t slot = frame_payload[PART_INFO_SLOT_AT];
+    uint8_t i;
+
+    if (slot >= PART_SLOTS) {
+        frame_response[0] = ERROR_OUT_OF_RANGE;
+        return 1;
+    }
+    for (i = 1; i < PART_INFO_RESPONSE_SIZE; i++) {
+        frame_response[i] = 0;
+    }
+    frame_response[PART_INFO_RESPONSE_SELECTED_AT] = parts_selected() == slot;
+    if (parts_present(slot)) {
+        frame_response[PART_INFO_RESPONSE_PRESENT_AT] = 1;
+        put_u16(PART_INFO_RESPONSE_GENERATION_AT, parts_generation);
+        put_u16(PART_INFO_RESPONSE_LENGTH_AT, parts_length);
+        put_u16(PART_INFO_RESPONSE_CRC_AT, parts_crc);
+        parts_open(slot);
+        parts_seek(PART_IMAGE_OPERATION_COUNT_AT);
+        frame_response[PART_INFO_RESPONSE_OPERATIONS_AT] = flash_read();
+        parts_read_name(slot);
+        for (i = 0; i < NAME_LENGTH; i++) {
+            frame_response[PART_INFO_RESPONSE_NAME_AT + i] = parts_name[i];
+        }
+    }
+    return PART_INFO_RESPONSE_SIZE;
+}
+
+static uint8_t part_read(void)
+{
+    uint8_t slot = frame_payload[PART_READ_SLOT_AT];
+    uint16_t offset = get_u16(PART_READ_OFFSET_AT);
+    uint16_t length;
+    uint8_t i;
+
+    if (!parts_present(slot)) {
+        frame_response[0] = ERROR_NO_PART;
+        return 1;
+    }
+    length = parts_length;
+    if (offset >= length || (offset & (UPLOAD_PIECE_MAX - 1))) {
+        frame_response[0] = ERROR_BAD_OFFSET;
+        return 1;
+    }
+    length -= offset;
+    parts_open(slot);
+    parts_seek(offset);
+    for (i = 0; i < UPLOAD_PIECE_MAX && i < length; i++) {
+        frame_response[PART_READ_RESPONSE_DATA_AT + i] = flash_read();
+    }
+    return PART_READ_RESPONSE_DATA_AT + i;
+}
+
+static uint8_t setting_get(void)
+{
+    uint8_t id = frame_payload[SETTING_GET_ID_AT];
+
+    if (id >= SETTING_COUNT) {
+        frame_response[0] = ERROR_OUT_OF_RANGE;
+        return 1;
+    }
+    put_i32(SETTING_GET_RESPONSE_VALUE_AT, settings[id]);
+    put_i32(SETTING_GET_RESPONSE_MINIMUM_AT, settings_minimum(id));
+    put_i32(SETTING_GET_RESPONSE_MAXIMUM_AT, settings_maximum(id));
+    return SETTING_GET_RESPONSE_SIZE;
+}
+
+/* Commands that write flash or EEPROM; only while nothing moves. */
+static uint8_t change_store(void)
+{
+    uint8_t error;
+
+    if (!machine_quiet()) {
+        return ERROR_BUSY;
+    }
+    switch (frame_code) {
+    case COMMAND_UPLOAD_BEGIN:
+        return parts_upload_begin(get_u16(UPLOAD_BEGIN_LENGTH_AT),
+                                  get_u16(UPLOAD_BEGIN_CRC_AT));
+    case COMMAND_UPLOAD_DATA:
+        return parts_upload_data(get_u16(UPLOAD_DATA_OFFSET_AT),
+                                 &frame_payload[UPLOAD_DATA_DATA_AT],
+                                 frame_length - UPLOAD_DATA_DATA_AT);
+    case COMMAND_PART_SELECT:
+        return parts_select(frame_payload[PART_SELECT_SLOT_AT]);
+    case COMMAND_PART_DELETE:
+        return parts_delete(frame_payload[PART_DELETE_SLOT_AT]);
+    default: /* COMMAND_SETTING_SET */
+        error = settings_set(frame_payload[SETTING_SET_ID_AT],
+                             get_i16(SETTING_SET_VALUE_AT));
+        machine_apply_settings();
+        return error;
+    }
+}
+
+static uint8_t length_fits(void)
+{
+    uint8_t i;
+
+    for (i = 0; lengths[i] != 0; i += 3) {
+        if (lengths[i] == frame_code) {
+            return frame_length >= lengths[i + 1] &&
+                   frame_length <= lengths[i + 2];
+        }
+    }
+    return 1; /* unknown commands are answered as such */
+}
+
+uint8_t commands_execute(void)
+{
+    uint8_t error;
+
+    if (!length_fits()) {
+        frame_response[0] = ERROR_BAD_LENGTH;
+        return 1;
+    }
+    frame_response[0] = ERROR_OK;
+    switch (frame_code) {
+    case COMMAND_HELLO:
+        return hello();
+    case COMMAND_STATUS:
+        return status();
+    case COMMAND_UPLOAD_COMMIT:
+        if (machine_quiet()) {
+            return upload_commit();
+        }
+        error = ERROR_BUSY;
+        break;
+    case COMMAND_PART_INFO:
+        return part_info();
+    case COMMAND_PART_READ:
+        return part_read();
+    case COMMAND_SETTING_GET:
+        return setting_get();
+    case COMMAND_HOME:
+        error = machine_home();
+        break;
+    case COMMAND_RUN:
+        error = machine_run(frame_payload[RUN_SLOT_AT]);
+        break;
+    case COMMAND_HOLD:
+        error = machine_hold();
+        break;
+    case COMMAND_RESUME:
+        error = machine_resume();
+        break;
+    case COMMAND_STOP:
+        error = machine_stop();
+        break;
+    case COMMAND_RESET:
+        error = machine_reset();
+        break;
+    case COMMAND_ZERO:
+        error =
+            machine_zero(frame_payload[ZERO_AXIS_AT], get_i16(ZERO_VALUE_AT));
+        break;
+    case COMMAND_UPLOAD_BEGIN:
+    case COMMAND_UPLOAD_DATA:
+    case COMMAND_PART_SELECT:
+    case COMMAND_PART_DELETE:
+    case COMMAND_SETTING_SET:
+        error = change_store();
+        break;
+    default:
+        error = ERROR_UNKNOWN_COMMAND;
+        break;
+    }
+    frame_response[0] = error;
+    return 1;
+}

@@ -1,0 +1,132 @@
+/* Start-up, the main loop, and the low-priority interrupt.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "board.h"          /* pin directions */
+#include "lathe/guard.h"    /* guard_tick */
+#include "lathe/machine.h"  /* the machine */
+#include "link/commands.h"  /* reset cause */
+#include "link/frame.h"     /* frame_poll */
+#include "link/protocol.h"  /* reset causes */
+#include "motion/stream.h"  /* step timer */
+#include "panel/inputs.h"   /* buttons */
+#include "panel/led.h"      /* status LED */
+#include "sfr.h"            /* registers */
+#include "store/parts.h"    /* part store */
+#include "store/settings.h" /* settings */
+#include "tick.h"           /* 1 ms */
+#include "usb/cdc.h"        /* USB */
+
+/*
+ * Configuration words. 20 MHz crystal / 5 -> 4 MHz -> 96 MHz PLL: / 2 gives
+ * the 48 MHz of the core (12 MIPS) and of USB. Brown-out at 4.33 V, because
+ * 48 MHz needs 4.2 V. Watchdog 4 ms x 64 = 256 ms. Low-voltage programming
+ * off: RB5 is a limit switch.
+ */
+/* clang-format off */
+#pragma config PLLDIV=5, CPUDIV=OSC1_PLL2, USBDIV=2, FOSC=HSPLL_HS
+#pragma config FCMEN=OFF, IESO=OFF, PWRT=ON, BOR=ON, BORV=1, VREGEN=ON
+#pragma config WDT=ON, WDTPS=64, CCP2MX=ON, PBADEN=OFF, LPT1OSC=OFF
+#pragma config MCLRE=ON, STVREN=ON, LVP=OFF, ICPRT=OFF, XINST=OFF, DEBUG=OFF
+#pragma config CP0=OFF, CP1=OFF, CP2=OFF, CP3=OFF, CPB=OFF, CPD=OFF
+#pragma config WRT0=OFF, WRT1=OFF, WRT2=OFF, WRT3=OFF, WRTB=OFF, WRTC=OFF
+#pragma config WRTD=OFF, EBTR0=OFF, EBTR1=OFF, EBTR2=OFF, EBTR3=OFF
+#pragma config EBTRB=OFF
+/* clang-format on */
+
+/* One page, as SDCC's small stack model needs. */
+#pragma stack 0x700 256
+
+#define ADCON1_DIGITAL 0x0F
+#define CMCON_OFF 0x07
+#define INTCON2_RBPU 0x80
+#define PORTE_RDPU 0x80
+#define RCON_IPEN 0x80
+#define INTCON_BOTH_LEVELS 0xC0
+#define PIR1_TMR2IF 0x02
+#define PIR2_USBIF 0x20
+
+/* RCON: a bit that is 0 tells what happened. */
+#define RCON_BOR 0x01
+#define RCON_POR 0x02
+#define RCON_TO 0x08
+#define RCON_RI 0x10
+#define RCON_CAUSES 0x1F
+#define STKPTR_FAULTS 0xC0
+
+/* Copied by startup.asm before anything changes them. */
+volatile uint8_t reset_rcon;
+volatile uint8_t reset_stkptr;
+
+void low_interrupt(void) __interrupt(2)
+{
+    if (PIR2 & PIR2_USBIF) {
+        usb_service();
+    }
+    if (PIR1 & PIR1_TMR2IF) {
+        PIR1 &= (uint8_t)~PIR1_TMR2IF;
+        tick_count();
+        inputs_tick();
+        guard_tick();
+        usb_tick();
+    }
+}
+
+static uint8_t reset_cause(void)
+{
+    if (!(reset_rcon & RCON_POR)) {
+        return RESET_CAUSE_POWER_ON;
+    }
+    if (!(reset_rcon & RCON_BOR)) {
+        return RESET_CAUSE_BROWN_OUT;
+    }
+    if (!(reset_rcon & RCON_TO)) {
+        return RESET_CAUSE_WATCHDOG;
+    }
+    if (!(reset_rcon & RCON_RI)) {
+        return RESET_CAUSE_SOFTWARE;
+    }
+    if (reset_stkptr & STKPTR_FAULTS) {
+        return RESET_CAUSE_STACK;
+    }
+    return RESET_CAUSE_MCLR;
+}
+
+static void set_up_pins(void)
+{
+    ADCON1 = ADCON1_DIGITAL;
+    CMCON = CMCON_OFF;
+    LATA = 0;
+    LATB = 0;
+    LATC = 0;
+    LATD = 0;
+    LATE = 0;
+    TRISA = TRISA_BOARD;
+    TRISB = TRISB_BOARD;
+    TRISC = TRISC_BOARD;
+    TRISD = TRISD_BOARD;
+    TRISE = TRISE_BOARD;
+    INTCON2 &= (uint8_t)~INTCON2_RBPU;
+    PORTE |= PORTE_RDPU;
+}
+
+void main(void)
+{
+    set_up_pins();
+    commands_reset_cause = reset_cause();
+    RCON |= RCON_IPEN | RCON_CAUSES;
+    inputs_init();
+    stream_init();
+    parts_init();
+    machine_init(settings_load());
+    tick_init();
+    usb_init();
+    INTCON = INTCON_BOTH_LEVELS;
+    for (;;) {
+        __asm clrwdt
+__endasm
+;
+machine_poll();
+frame_poll();
+led_poll();
+}
+}

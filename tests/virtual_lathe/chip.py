@@ -13,7 +13,13 @@ from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
-from .native_library import InterruptCostC, PinChangeC, RamWriteC, library
+from .native_library import (
+    InterruptCostC,
+    NonvolatileCountsC,
+    PinChangeC,
+    RamWriteC,
+    library,
+)
 from .symbols import Symbols
 
 CYCLES_PER_SECOND = 12_000_000
@@ -243,6 +249,14 @@ class Chip:
         )
 
     @property
+    def nonvolatile_counts(self) -> dict[str, int]:
+        """Writes so far: ``eeprom_writes`` (bytes), ``flash_erases`` (blocks of 64 bytes),
+        ``flash_writes`` (blocks of 32), ``broken_unlocks`` (ignored write commands)."""
+        counts = NonvolatileCountsC()
+        self._native.vl_nonvolatile_counts(ctypes.byref(counts))
+        return {name: int(getattr(counts, name)) for name, *_ in counts._fields_}
+
+    @property
     def config_words(self) -> bytes:
         """The 14 configuration bytes from 0x300000."""
         words = (ctypes.c_uint8 * 14)()
@@ -290,7 +304,7 @@ class Chip:
         """Return what the high- or the low-priority interrupt has cost so far."""
         cost = InterruptCostC()
         self._native.vl_interrupts(int(high), ctypes.byref(cost))
-        return InterruptCost(*(int(getattr(cost, name)) for name, _ in cost._fields_))
+        return InterruptCost(*(int(getattr(cost, name)) for name, *_ in cost._fields_))
 
     @property
     def stack_depth_max(self) -> int:

@@ -50,6 +50,79 @@ class PinChangeC(Structure):
     _fields_ = [("cycle", c_uint64), ("levels", c_uint64)]
 
 
+class NonvolatileCountsC(Structure):
+    """struct vl_nonvolatile_counts"""
+
+    _fields_ = [
+        (name, c_uint32)
+        for name in ("eeprom_writes", "flash_erases", "flash_writes", "broken_unlocks")
+    ]
+
+
+class UsbCountsC(Structure):
+    """struct vl_usb_counts"""
+
+    _fields_ = [
+        (name, c_uint64)
+        for name in (
+            "frames",
+            "transactions",
+            "naks",
+            "stalls",
+            "timeouts",
+            "bytes_in",
+            "bytes_out",
+            "wrong_toggles",
+        )
+    ]
+
+
+class AxisSetupC(Structure):
+    """struct vl_axis_setup"""
+
+    _fields_ = [
+        *(
+            (name, c_int32)
+            for name in (
+                "slide",
+                "backlash",
+                "slack",
+                "switch_travel",
+                "switch_broken",
+                "stop_plus",
+                "stop_minus",
+            )
+        ),
+        *((name, c_double) for name in ("pull_in", "pull_out", "acceleration")),
+    ]
+
+
+class AxisStateC(Structure):
+    """struct vl_axis_state"""
+
+    _fields_ = [
+        *((name, c_int64) for name in ("slide", "slack", "rotor", "commanded")),
+        *(
+            (name, c_uint64)
+            for name in ("steps", "lost_steps", "illegal_patterns", "jumps", "end_stops")
+        ),
+        ("fastest", c_double),
+        ("pressed", c_int32),
+    ]
+
+
+class MoveC(Structure):
+    """struct vl_move"""
+
+    _fields_ = [("cycle", c_uint64), ("x", c_int64), ("z", c_int64)]
+
+
+class FaultC(Structure):
+    """struct vl_fault"""
+
+    _fields_ = [("cycle", c_uint64), ("axis", c_int32), ("kind", c_int32), ("value", c_int64)]
+
+
 _BYTES = POINTER(c_uint8)
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_load": (c_int, [c_char_p]),
@@ -83,6 +156,31 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_pin_changes": (c_int, [POINTER(PinChangeC), c_int]),
     "vl_vcd_open": (c_int, [c_char_p]),
     "vl_vcd_close": (None, []),
+    "vl_nonvolatile_counts": (None, [POINTER(NonvolatileCountsC)]),
+    "vl_usb_attach": (None, []),
+    "vl_usb_plug": (None, [c_int]),
+    "vl_usb_connected": (c_int, []),
+    "vl_usb_reset": (None, [c_int]),
+    "vl_usb_suspend": (None, [c_int]),
+    "vl_usb_submit": (None, [c_int, c_uint, c_uint, c_uint, c_char_p, c_uint]),
+    "vl_usb_result": (c_int, [_BYTES, POINTER(c_uint), POINTER(c_uint)]),
+    "vl_usb_open": (None, [c_uint, c_uint, c_uint, c_uint]),
+    "vl_usb_close": (None, []),
+    "vl_usb_write": (c_uint, [c_char_p, c_uint]),
+    "vl_usb_read": (c_uint, [_BYTES, c_uint]),
+    "vl_usb_unsent": (c_uint, []),
+    "vl_usb_port_failed": (c_int, []),
+    "vl_usb_lose_handshakes": (None, [c_uint]),
+    "vl_usb_counts": (None, [POINTER(UsbCountsC)]),
+    "vl_usb_mistake": (c_int, [c_uint, c_char_p, c_uint]),
+    "vl_machine_attach": (None, []),
+    "vl_axis_setup": (c_int, [c_int, POINTER(AxisSetupC)]),
+    "vl_axis_read": (c_int, [c_int, POINTER(AxisStateC)]),
+    "vl_switch_broken": (c_int, [c_int, c_int, c_int]),
+    "vl_motor_power": (None, [c_int]),
+    "vl_switch_quality": (None, [c_uint, c_uint, c_uint]),
+    "vl_moves": (c_int, [POINTER(MoveC), c_int]),
+    "vl_faults": (c_int, [POINTER(FaultC), c_int]),
 }
 
 

@@ -86,7 +86,8 @@ void Nonvolatile::attach()
     for (unsigned i = 0; i < EEPROM_BYTES; i++)
         eeprom[i] = cpu->get_eeprom()->get_rom()[i]->get_value();
     for (unsigned word = 0; word < FLASH_BYTES / 2; word++) {
-        if (!cpu->pma->hasValid_opcode_at_index(word))
+        // Never programmed; tables hold words that are no instruction either.
+        if (cpu->program_memory[word] == &cpu->bad_instruction)
             cpu->pma->put_rom(word * 2, 0xFFFF);
     }
     install(EECON1_ADDRESS, new Eecon1(cpu));

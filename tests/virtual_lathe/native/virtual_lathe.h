@@ -118,6 +118,100 @@ int vl_pin_changes(struct vl_pin_change *entries, int room);
 int vl_vcd_open(const char *path);
 void vl_vcd_close(void);
 
+/* ---- USB: usb_engine.cc, usb_host.cc ------------------------------------ */
+
+/* Puts the models of the serial interface engine and of a host behind the
+ * chip, with the cable out (VBUS sense RB6 low).  Call before running. */
+void vl_usb_attach(void);
+void vl_usb_plug(int in);
+/* The cable is in and the firmware has switched its pull-up on. */
+int vl_usb_connected(void);
+/* Drives the reset state (1) and ends it (0); run 10 ms in between. */
+void vl_usb_reset(int active);
+/* Stops the frames (1) or lets them go on after resume signalling (0). */
+void vl_usb_suspend(int on);
+
+enum vl_token { VL_OUT = 1, VL_IN = 9, VL_SETUP = 13 };
+enum vl_handshake { VL_NONE = 0, VL_ACK = 1, VL_NAK = 2, VL_STALL = 3 };
+/* Queues one transaction; vl_run() stops with VL_STOP_EVENT when it is over,
+ * then vl_usb_result() gives the enum vl_handshake (VL_NONE: no answer), and
+ * for IN the data and the toggle.  Before that it gives -1. */
+void vl_usb_submit(int token, unsigned address, unsigned endpoint,
+                   unsigned toggle, const uint8_t *data, unsigned count);
+int vl_usb_result(uint8_t data[64], unsigned *count, unsigned *toggle);
+
+/* The serial port: from vl_usb_open() on bulk OUT is sent as long as there is
+ * something and bulk IN and the notification endpoint are polled. */
+void vl_usb_open(unsigned address, unsigned in, unsigned out,
+                 unsigned notify);
+void vl_usb_close(void);
+/* Both return how many bytes were taken or given; a queue holds 4096. */
+unsigned vl_usb_write(const uint8_t *data, unsigned count);
+unsigned vl_usb_read(uint8_t *data, unsigned room);
+unsigned vl_usb_unsent(void);
+/* 1 when the device stalled a bulk endpoint. */
+int vl_usb_port_failed(void);
+/* Fault injection: the handshakes of the next n transactions are lost. */
+void vl_usb_lose_handshakes(unsigned n);
+struct vl_usb_counts {
+    uint64_t frames, transactions, naks, stalls, timeouts, bytes_in,
+        bytes_out, wrong_toggles;
+};
+void vl_usb_counts(struct vl_usb_counts *counts);
+/* Text of the n-th mistake of the firmware; -1 when there are fewer. */
+int vl_usb_mistake(unsigned index, char *text, unsigned room);
+
+/* ---- Machine: machine.cc ------------------------------------------------- */
+
+enum vl_axis { VL_X = 0, VL_Z = 1 };
+/* Connects motors, screws and switches to the coil and switch pins; then set
+ * up both axes.  Positions are machine coordinates of the slide: 0 is where
+ * the limit switch opens, negative towards axis and chuck. */
+void vl_machine_attach(void);
+struct vl_axis_setup {
+    int32_t slide;              /* where the slide stands, full steps */
+    int32_t backlash;           /* dead steps of the screw */
+    int32_t slack;              /* 0..backlash: how much is taken up now;
+                                   backlash = pushed in + direction last */
+    int32_t switch_travel;      /* closes beyond this, opens at 0 */
+    int32_t switch_broken;      /* 1: its wire is broken */
+    int32_t stop_plus;          /* hard ends of the slide, full steps */
+    int32_t stop_minus;
+    double pull_in;             /* full steps/s the motor starts at */
+    double pull_out;            /* full steps/s it reaches at most */
+    double acceleration;        /* full steps/s2 between the two */
+};
+int vl_axis_setup(int axis, const struct vl_axis_setup *setup);
+struct vl_axis_state {
+    int64_t slide, slack, rotor, commanded;     /* half steps */
+    uint64_t steps;             /* changes of the coil pattern */
+    uint64_t lost_steps;        /* changes the rotor did not follow */
+    uint64_t illegal_patterns;
+    uint64_t jumps;             /* changes by more than a full step */
+    uint64_t end_stops;         /* attempts to go past a hard end */
+    double fastest;             /* full steps/s */
+    int32_t pressed;            /* the switch, before bounce and noise */
+};
+int vl_axis_read(int axis, struct vl_axis_state *state);
+int vl_switch_broken(int axis, int broken, int switch_travel);
+/* Emergency stop: without motor power the rotors stay where they are. */
+void vl_motor_power(int on);
+/* Contact bounce after each change in us, noise pulses per second. */
+void vl_switch_quality(unsigned bounce_us, unsigned noise_hz, unsigned seed);
+
+/* Every movement of a slide, and everything that went wrong.  Both functions
+ * hand out the oldest entries and forget them; they return how many. */
+struct vl_move { uint64_t cycle; int64_t x, z; };       /* half steps */
+int vl_moves(struct vl_move *entries, int room);
+enum vl_fault_kind {
+    VL_FAULT_PATTERN = 0,       /* value: the coil pattern */
+    VL_FAULT_JUMP = 1,          /* value: half steps */
+    VL_FAULT_LOST_STEP = 2,     /* value: full steps/s asked for */
+    VL_FAULT_END_STOP = 3       /* value: full steps */
+};
+struct vl_fault { uint64_t cycle; int32_t axis; int32_t kind; int64_t value; };
+int vl_faults(struct vl_fault *entries, int room);
+
 #ifdef __cplusplus
 }
 #endif

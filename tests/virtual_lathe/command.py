@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line of the virtual lathe.
+
+It prints the port on the first line of standard output, then a line of state every few seconds,
+and writes the report when it ends. Lines typed on standard input press buttons while it runs:
+``press run``, ``press hold``, ``press stop``, ``press estop``, ``press release``, ``plug``,
+``unplug``, ``state``, ``quit``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import select
+import signal
+import sys
+import time
+from pathlib import Path
+from types import FrameType
+
+from .chip import EEPROM_BYTES, FLASH_BYTES, NonVolatile
+from .lathe import BUTTONS, DEFAULT_FIRMWARE, Options, VirtualLathe
+from .machine import AxisName
+from .terminal import Terminal
+from .usb_host import UsbError
+
+ACTIONS = (*BUTTONS, "estop", "release", "plug", "unplug")
+SLICE_S = 0.005
+STATE_EVERY_S = 5.0
+MEMORY_BYTES = FLASH_BYTES + EEPROM_BYTES
+
+
+def _timed(text: str) -> tuple[str, float]:
+    name, _, seconds = text.partition("@")
+    if name not in ACTIONS or not seconds:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: write BUTTON@SECONDS with one of {', '.join(ACTIONS)}"
+        )
+    return name, float(seconds)
+
+
+def _nose_radius(text: str) -> float:
+    if float(text) != 0.0:
+        raise argparse.ArgumentTypeError(
+            "the tool is modelled as a point so far: only a nose radius of 0 is possible"
+        )
+    return 0.0
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser with all options of the command."""
+    parser = argparse.ArgumentParser(prog="virtual_lathe", description=__doc__)
+    add = parser.add_argument
+    add("--firmware", type=Path, default=DEFAULT_FIRMWARE, help=".hex or .cod for the 18F4550")
+    add("--part", type=Path, help="part file to compare the workpiece with")
+    add("--stock-diameter", type=float, default=25.4, metavar="MM")
+    add("--stock-length", type=float, default=50.8, metavar="MM", help="from part zero to chuck")
+    add("--stock-allowance", type=float, default=0.0, metavar="MM", help="raw metal beyond z = 0")
+    add("--nose-radius", type=_nose_radius, default=0.0, metavar="MM")
+    for axis in "xz":
+        add(f"--backlash-{axis}", type=int, default=0, metavar="STEPS")
+        add(f"--switch-travel-{axis}", type=int, default=0, metavar="STEPS")
+    add("--start-x", type=int, default=-400, metavar="STEPS", help="slide X at power-on")
+    add("--start-z", type=int, default=-900, metavar="STEPS", help="slide Z at power-on")
+    add("--part-zero-x", type=int, default=-3575, metavar="STEPS", help="spindle axis")
+    add("--part-zero-z", type=int, default=-8000, metavar="STEPS", help="front of the part")
+    add("--motor-limit", type=float, default=1100.0, metavar="STEPS/S")
+    add("--cut-rate-limit", type=float, default=900.0, metavar="STEPS/S")
+    add("--switch-bounce", type=int, default=0, metavar="US")
+    add("--switch-noise", type=int, default=0, metavar="HZ")
+    add("--seed", type=int, default=1)
+    add("--press", type=_timed, action="append", default=[], metavar="BUTTON@T")
+    add("--unplug", type=float, action="append", default=[], metavar="T", help="same: unplug@T")
+    add("--plug", type=float, action="append", default=[], metavar="T")
+    add("--no-usb", action="store_true", help="the cable is never put in")
+    add("--port-link", type=Path, metavar="PATH")
+    add("--vcd", type=Path, metavar="FILE", help="trace of all pins for GTKWave")
+    add("--report", type=Path, metavar="FILE")
+    add("--eeprom-file", type=Path, metavar="FILE", help="keeps flash and EEPROM between runs")
+    add("--seconds", type=float, help="stop after this simulated time")
+    add("--real-time", action="store_true", help="not faster than the clock on the wall")
+    return parser
+
+
+def options_from(arguments: argparse.Namespace) -> Options:
+    """Turn parsed arguments into the options of the lathe."""
+    return Options(
+        firmware=arguments.firmware,
+        part=arguments.part,
+        stock_diameter_mm=arguments.stock_diameter,
+        stock_length_mm=arguments.stock_length,
+        stock_allowance_mm=arguments.stock_allowance,
+        backlash_x=arguments.backlash_x,
+        backlash_z=arguments.backlash_z,
+        switch_travel_x=arguments.switch_travel_x,
+        switch_travel_z=arguments.switch_travel_z,
+        start_x=arguments.start_x,
+        start_z=arguments.start_z,
+        part_zero_x=arguments.part_zero_x,
+        part_zero_z=arguments.part_zero_z,
+        pull_in=arguments.motor_limit,
+        cut_rate_limit=arguments.cut_rate_limit,
+        bounce_us=arguments.switch_bounce,
+        noise_hz=arguments.switch_noise,
+        seed=arguments.seed,
+        usb=not arguments.no_usb,
+    )
+
+
+def load_memory(path: Path | None) -> NonVolatile | None:
+    """Read flash and EEPROM of an earlier run; None when there is none."""
+    if path is None or not path.exists():
+        return None
+    content = path.read_bytes()
+    if len(content) != MEMORY_BYTES:
+        raise SystemExit(f"{path} does not hold {MEMORY_BYTES} bytes of flash and EEPROM")
+    return NonVolatile(content[:FLASH_BYTES], content[FLASH_BYTES:])
+
+
+class Session:
+    """One run of the command."""
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.arguments = arguments
+        self.lathe = VirtualLathe(
+            options_from(arguments), load_memory(arguments.eeprom_file)
+        )
+        if arguments.vcd:
+            self.lathe.chip.open_vcd(arguments.vcd)
+        self.terminal = Terminal(self.lathe.host, arguments.port_link)
+        self.stopped = False
+        self.enumerate_wanted = False
+        self._stdin_open = not sys.stdin.closed
+        self._typed = b""
+        self._schedule()
+
+    def _schedule(self) -> None:
+        for name, seconds in self.arguments.press:
+            self.lathe.at(seconds, lambda name=name: self.act(name))
+        for seconds in self.arguments.unplug:
+            self.lathe.at(seconds, lambda: self.act("unplug"))
+        for seconds in self.arguments.plug:
+            self.lathe.at(seconds, lambda: self.act("plug"))
+        if self.lathe.options.usb and not self.arguments.plug:
+            self.act("plug")
+
+    def act(self, name: str) -> None:
+        """Press a button or move the cable."""
+        self.lathe.press(name)
+        if name in ("plug", "unplug"):
+            self.enumerate_wanted = name == "plug"
+
+    def stop(self, _signal: int, _frame: FrameType | None) -> None:
+        """End the run at the next opportunity."""
+        self.stopped = True
+
+    def state_line(self) -> str:
+        """Return one line about where things stand."""
+        x = self.lathe.machine.axis(AxisName.X)
+        z = self.lathe.machine.axis(AxisName.Z)
+        usb = "open" if self.lathe.host.port_open else "closed"
+        return (
+            f"t={self.lathe.seconds:.1f}s X={x.slide:g} Z={z.slide:g} "
+            f"steps={x.steps}+{z.steps} lost={x.lost_steps}+{z.lost_steps} "
+            f"cut={self.lathe.workpiece.steps_cutting} port={usb} "
+            f"led={self.lathe.chip.level('RC0')}"
+        )
+
+    def run(self) -> None:
+        """Run until the time is up or somebody ends it."""
+        print(f"port: {self.arguments.port_link or self.terminal.name}", flush=True)
+        wall_start, next_state = time.monotonic(), time.monotonic() + STATE_EVERY_S
+        limit = self.arguments.seconds
+        while not self.stopped and (limit is None or self.lathe.seconds < limit):
+            self._connect()
+            self.lathe.run(SLICE_S)
+            self.terminal.exchange()
+            self._listen()
+            if time.monotonic() >= next_state:
+                next_state += STATE_EVERY_S
+                print(self.state_line(), flush=True)
+            if self.arguments.real_time:
+                ahead = self.lathe.seconds - (time.monotonic() - wall_start)
+                if ahead > 0:
+                    time.sleep(ahead)
+
+    def _connect(self) -> None:
+        host = self.lathe.host
+        if host.port_open and not host.connected:
+            host.port_open = False
+            self.enumerate_wanted = True
+        if not self.enumerate_wanted or not host.connected:
+            return
+        try:
+            host.enumerate()
+            host.open_port()
+            self.enumerate_wanted = False
+        except UsbError as error:
+            print(f"usb: {error}", flush=True)
+
+    def _listen(self) -> None:
+        if not self._stdin_open or not select.select([sys.stdin], [], [], 0)[0]:
+            return
+        chunk = os.read(sys.stdin.fileno(), 256)
+        self._stdin_open = bool(chunk)
+        self._typed += chunk
+        while b"\n" in self._typed:
+            line, self._typed = self._typed.split(b"\n", 1)
+            self._obey(line.decode(errors="replace").split())
+
+    def _obey(self, words: list[str]) -> None:
+        if words == ["quit"]:
+            self.stopped = True
+        elif words == ["state"]:
+            print(self.state_line(), flush=True)
+        elif words and words[-1] in ACTIONS:
+            self.act(words[-1])
+        elif words:
+            print(f"not understood: {' '.join(words)}", flush=True)
+
+    def finish(self) -> None:
+        """Write the report and what must survive."""
+        self.lathe.chip.close_vcd()
+        self.terminal.close()
+        if self.arguments.report:
+            text = json.dumps(self.lathe.report(), indent=1)
+            self.arguments.report.write_text(text + "\n", encoding="utf-8")
+        if self.arguments.eeprom_file:
+            memory = self.lathe.chip.save()
+            self.arguments.eeprom_file.write_bytes(memory.flash + memory.eeprom)
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the command; returns the exit code."""
+    arguments = build_parser().parse_args(argv)
+    try:
+        session = Session(arguments)
+    except (RuntimeError, OSError, ValueError, KeyError) as error:
+        print(f"virtual_lathe: {error}", file=sys.stderr)
+        return 1
+    signal.signal(signal.SIGINT, session.stop)
+    signal.signal(signal.SIGTERM, session.stop)
+    try:
+        session.run()
+    finally:
+        session.finish()
+    return 0

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything together: chip, cable, machine and workpiece, as tests and the command use it."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .chip import CYCLES_PER_SECOND, Chip, Drive, InterruptCost, NonVolatile, Stop
+from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine
+from .part import WantedPart, read_part
+from .usb_host import SerialPort, UsbHost
+from .workpiece import Stock, Workpiece
+
+BUTTONS = {"run": "RD4", "hold": "RD5", "stop": "RD6"}
+ESTOP_PIN = "RD7"
+PRESS_S = 0.1
+SLICE_S = 0.02
+STEP_NM = 7112
+TRAVEL = {AxisName.X: 3575, AxisName.Z: 16072}
+DEFAULT_FIRMWARE = Path(__file__).resolve().parents[2] / "build" / "firmware" / "tornillo.hex"
+
+
+@dataclass
+class Options:
+    """The virtual machine. Lengths in full steps unless the name says mm.
+
+    ``start_x`` and ``start_z`` are the slides' places when power comes; ``seed`` decides how much
+    of the backlash is taken up then. ``cut_rate_limit`` is the fastest feed in steps/s that is
+    not a crash. ``isr_limit`` is the longest high-priority interrupt allowed, in cycles.
+    """
+
+    firmware: Path = DEFAULT_FIRMWARE
+    part: Path | None = None
+    stock_diameter_mm: float = 25.4
+    stock_length_mm: float = 50.8
+    stock_allowance_mm: float = 0.0
+    backlash_x: int = 0
+    backlash_z: int = 0
+    switch_travel_x: int = 0
+    switch_travel_z: int = 0
+    start_x: int = -400
+    start_z: int = -900
+    part_zero_x: int = -3575
+    part_zero_z: int = -8000
+    pull_in: float = 1100.0
+    cut_rate_limit: float = 900.0
+    isr_limit: int = 0
+    bounce_us: int = 0
+    noise_hz: int = 0
+    seed: int = 1
+    usb: bool = True
+
+
+@dataclass(frozen=True)
+class Check:
+    """A persistent expectation: its name and what broke it (empty = kept)."""
+
+    name: str
+    broken: tuple[str, ...]
+
+
+
+
+class VirtualLathe:
+    """A lathe with firmware in it, just switched on; time stands still until it is told to run."""
+
+    def __init__(self, options: Options | None = None, memory: NonVolatile | None = None) -> None:
+        self.options = options if options is not None else Options()
+        self.chip = Chip(self.options.firmware)
+        if memory is not None:
+            self.chip.restore(memory)
+        self.host = UsbHost(self.chip, self.run_to)
+        self.port = SerialPort(self.host)
+        self.machine = Machine(
+            self._axis_options(AxisName.X), self._axis_options(AxisName.Z)
+        )
+        self.machine.set_switch_quality(
+            self.options.bounce_us, self.options.noise_hz, self.options.seed
+        )
+        self.workpiece = Workpiece(
+            self._stock(),
+            self.options.part_zero_x,
+            self.options.part_zero_z,
+            self.options.cut_rate_limit,
+        )
+        self.wanted: WantedPart | None = (
+            read_part(self.options.part) if self.options.part is not None else None
+        )
+        self._faults: list[Fault] = []
+        self._furthest: dict[AxisName, tuple[float, float]] = {}
+        self._timed: list[tuple[int, Callable[[], None]]] = []
+        self._wall_start = time.monotonic()
+        self.chip.drive(ESTOP_PIN, Drive.LOW)
+        for pin in BUTTONS.values():
+            self.chip.drive(pin, Drive.OPEN)
+
+    def _axis_options(self, name: AxisName) -> AxisOptions:
+        options = self.options
+        if name == AxisName.X:
+            start, backlash, travel = options.start_x, options.backlash_x, options.switch_travel_x
+        else:
+            start, backlash, travel = options.start_z, options.backlash_z, options.switch_travel_z
+        return AxisOptions(
+            start=start,
+            travel=TRAVEL[name],
+            backlash=backlash,
+            slack=random.Random(options.seed + int(name)).randint(0, backlash),
+            switch_travel=travel,
+            pull_in=options.pull_in,
+            pull_out=options.pull_in,
+        )
+
+    def _stock(self) -> Stock:
+        def steps(mm: float) -> int:
+            return round(mm * 1e6 / STEP_NM)
+
+        return Stock(
+            steps(self.options.stock_diameter_mm / 2),
+            steps(self.options.stock_length_mm),
+            steps(self.options.stock_allowance_mm),
+        )
+
+    # -- time -------------------------------------------------------------------------------------
+
+    @property
+    def symbols(self) -> Any:
+        """Addresses of firmware variables and functions by name."""
+        return self.chip.symbols
+
+    @property
+    def seconds(self) -> float:
+        """Simulated seconds since power-on."""
+        return self.chip.seconds
+
+    def run_to(self, cycle: int) -> Stop:
+        """Run to a cycle; slides cut, timed actions happen on the way."""
+        while True:
+            now = self.chip.cycle
+            self._run_timed(now)
+            slice_end = min(cycle, now + round(SLICE_S * CYCLES_PER_SECOND))
+            if self._timed:
+                slice_end = min(slice_end, max(now + 1, self._timed[0][0]))
+            reason = self.chip.run_to(slice_end)
+            self._collect()
+            if reason != Stop.CYCLE or self.chip.cycle >= cycle:
+                return reason
+
+    def run(self, seconds: float) -> None:
+        """Let simulated time pass."""
+        self.run_to(self.chip.cycle + round(seconds * CYCLES_PER_SECOND))
+
+    def run_until(
+        self, predicate: Callable[[], bool], timeout: float, every: float = 5e-3
+    ) -> bool:
+        """Run until ``predicate()`` holds; False when ``timeout`` simulated seconds passed."""
+        end = self.chip.cycle + round(timeout * CYCLES_PER_SECOND)
+        while not predicate():
+            if self.chip.cycle >= end:
+                return False
+            self.run_to(min(end, self.chip.cycle + round(every * CYCLES_PER_SECOND)))
+        return True
+
+    def at(self, seconds: float, action: Callable[[], None]) -> None:
+        """Do something at a simulated time."""
+        self._timed.append((round(seconds * CYCLES_PER_SECOND), action))
+        self._timed.sort(key=lambda entry: entry[0])
+
+    def _run_timed(self, now: int) -> None:
+        while self._timed and self._timed[0][0] <= now:
+            self._timed.pop(0)[1]()
+
+    def _collect(self) -> None:
+        moves = self.machine.take_moves()
+        self.workpiece.cut(moves)
+        for name, values in ((AxisName.X, [m.x for m in moves]), (AxisName.Z, [m.z for m in moves])):
+            if values:
+                low, high = self._furthest.get(name, (values[0] / 2, values[0] / 2))
+                self._furthest[name] = min(low, min(values) / 2), max(high, max(values) / 2)
+        self._faults += self.machine.take_faults()
+
+    # -- hands ------------------------------------------------------------------------------------
+
+    def press(self, button: str) -> None:
+        """Press ``run``, ``hold`` or ``stop`` for 0.1 s, push ``estop`` (it stays in until
+        ``release``), pull or put in the cable with ``unplug`` and ``plug``.
+
+        Raises:
+            ValueError: no such button.
+        """
+        if button in BUTTONS:
+            self.chip.drive(BUTTONS[button], Drive.LOW)
+            self.at(self.seconds + PRESS_S, lambda: self.chip.drive(BUTTONS[button], Drive.OPEN))
+        elif button in ("estop", "release"):
+            pushed = button == "estop"
+            self.machine.set_motor_power(not pushed)
+            self.chip.drive(ESTOP_PIN, Drive.OPEN if pushed else Drive.LOW)
+        elif button == "plug":
+            self.host.plug()
+        elif button == "unplug":
+            self.host.unplug()
+        else:
+            raise ValueError(f"no button {button!r}: run, hold, stop, estop, release")
+
+    def plug(self) -> None:
+        """Put the USB cable in and wait until the host has opened the serial port."""
+        self.host.plug()
+        self.host.enumerate()
+        self.host.open_port()
+
+    def unplug(self) -> None:
+        """Pull the USB cable."""
+        self.host.unplug()
+
+    # -- judgement --------------------------------------------------------------------------------
+
+    def lost_steps(self, name: AxisName) -> int:
+        """Steps the motor of an axis has lost."""
+        state = self.machine.axis(name)
+        return max(state.lost_steps, round(abs(state.commanded - state.rotor)))
+
+    def interrupt_cost(self) -> InterruptCost:
+        """Cost of the step interrupt so far."""
+        return self.chip.interrupt_cost(high=True)
+
+    def checks(self) -> list[Check]:
+        """Evaluate the expectations that must hold during every run."""
+        by_kind: dict[FaultKind, list[str]] = {kind: [] for kind in FaultKind}
+        for fault in self._faults:
+            by_kind[fault.kind].append(
+                f"{fault.axis.name} at cycle {fault.cycle}: {fault.value}"
+            )
+        outside = [
+            f"{name.name} {low:g}..{high:g}"
+            for name, (low, high) in self._furthest.items()
+            if low < -TRAVEL[name]
+        ]
+        cost = self.interrupt_cost()
+        slow = [f"{cost.worst} cycles at cycle {cost.worst_at}"]
+        kept = self.options.isr_limit == 0 or cost.worst <= self.options.isr_limit
+        return [
+            Check("coil pattern legal", tuple(by_kind[FaultKind.PATTERN])),
+            Check("at most one full step at a time", tuple(by_kind[FaultKind.JUMP])),
+            Check("no step lost", tuple(by_kind[FaultKind.LOST_STEP])),
+            Check("no hard end touched", tuple(by_kind[FaultKind.END_STOP])),
+            Check("slides inside the travel", tuple(outside)),
+            Check("no crash", tuple(str(crash) for crash in self.workpiece.crashes)),
+            Check("USB used by the book", tuple(self.host.mistakes)),
+            Check("step interrupt inside its window", () if kept else tuple(slow)),
+        ]
+
+    def broken_checks(self) -> list[Check]:
+        """Return the expectations that did not hold."""
+        return [check for check in self.checks() if check.broken]
+
+    def report(self) -> dict[str, Any]:
+        """Return the report as the contract wants it, for JSON."""
+        self._collect()
+        work = self.workpiece
+        lost = {name: self.lost_steps(name) for name in AxisName}
+        stops = [f for f in self._faults if f.kind == FaultKind.END_STOP]
+        crashes = [crash.as_dict() for crash in work.crashes]
+        if stops:
+            first = stops[0]
+            crashes.append(
+                {
+                    "kind": f"end stop {first.axis.name}",
+                    "seconds": first.cycle / CYCLES_PER_SECOND,
+                    "steps": len(stops),
+                }
+            )
+        cost = self.interrupt_cost()
+        wanted = self.wanted
+        return {
+            "virtual_seconds": self.seconds,
+            "wall_seconds": time.monotonic() - self._wall_start,
+            "cycles": self.chip.cycle,
+            "lost_steps": sum(lost.values()),
+            "lost_steps_x": lost[AxisName.X],
+            "lost_steps_z": lost[AxisName.Z],
+            "crashes": crashes,
+            "gouge_max_steps": work.gouge_max_steps(wanted) if wanted else None,
+            "profile": work.profile(STEP_NM, STEP_NM),
+            "dimensions": work.dimensions(wanted, STEP_NM, STEP_NM) if wanted else [],
+            "steps_cutting": work.steps_cutting,
+            "dead_steps_x": self.options.backlash_x,
+            "dead_steps_z": self.options.backlash_z,
+            "slide_x": self.machine.axis(AxisName.X).slide,
+            "slide_z": self.machine.axis(AxisName.Z).slide,
+            "usb_errors": self.host.mistakes,
+            "usb_counts": self.host.counts,
+            "interrupt_worst_cycles": cost.worst,
+            "interrupt_entries": cost.entries,
+            "stack_depth_max": self.chip.stack_depth_max,
+            "resets": [[cycle, kind.name] for cycle, kind in self.chip.resets],
+            "nonvolatile": self.chip.nonvolatile_counts,
+            "checks": {check.name: list(check.broken) for check in self.checks()},
+        }

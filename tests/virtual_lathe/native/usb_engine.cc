@@ -1,0 +1,459 @@
+// SPDX-License-Identifier: Apache-2.0
+// See usb_engine.hh.  Section and table numbers are those of data sheet
+// DS39632E.
+
+#include "usb_engine.hh"
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace lathe {
+
+namespace {
+
+enum Ucon : uint8_t {
+    SUSPND = 0x02, RESUME = 0x04, USBEN = 0x08, PKTDIS = 0x10, SE0 = 0x20,
+    PPBRST = 0x40
+};
+enum Uir : uint8_t {
+    URSTIF = 0x01, UERRIF = 0x02, ACTVIF = 0x04, TRNIF = 0x08, IDLEIF = 0x10,
+    STALLIF = 0x20, SOFIF = 0x40
+};
+enum Ucfg : uint8_t { PPB = 0x03, FSEN = 0x04, UTRDIS = 0x08, UPUEN = 0x10 };
+enum Uep : uint8_t {
+    EPSTALL = 0x01, EPINEN = 0x02, EPOUTEN = 0x04, EPCONDIS = 0x08,
+    EPHSHK = 0x10
+};
+enum Bdstat : uint8_t {
+    BSTALL = 0x04, DTSEN = 0x08, DTS = 0x40, UOWN = 0x80
+};
+constexpr unsigned RAM_FIRST = 0x400, RAM_LAST = 0x7FF;
+constexpr unsigned DESCRIPTOR_BYTES = 4, ENDPOINTS = 16;
+constexpr unsigned PACKET_MAX = 64;
+constexpr uint8_t USBIF = 0x20;
+constexpr size_t STATUS_FIFO_DEPTH = 4;
+// Section 17.2.3: TRNIF comes back at most 6 cycles after it was cleared.
+constexpr uint64_t TRNIF_AGAIN_CYCLES = 6;
+constexpr size_t MISTAKES_MAX = 200;
+
+class UsbRegister : public sfr_register {
+public:
+    UsbRegister(Module *owner, unsigned where)
+        : sfr_register(owner, ("usb_" + std::to_string(where)).c_str(), "")
+    {
+        address = where;
+    }
+    unsigned get() override { return usb_engine().read(address); }
+    unsigned get_value() override { return usb_engine().value(address); }
+    void put(unsigned v) override { usb_engine().write(address, v); }
+    void put_value(unsigned v) override { usb_engine().write(address, v); }
+    void reset(RESET_TYPE) override {}
+};
+
+class UsbRam : public Register {
+public:
+    UsbRam(Module *owner, unsigned where)
+        : Register(owner, ("usb_ram_" + std::to_string(where)).c_str())
+    {
+        address = where;
+    }
+    unsigned get() override { return value.get(); }
+    void put(unsigned v) override
+    {
+        unsigned before = value.get();
+        value.put(v & 0xFF);
+        usb_engine().ram_written(address, before, v & 0xFF);
+    }
+    void put_value(unsigned v) override { value.put(v & 0xFF); }
+    REGISTER_TYPES isa() override { return FILE_REGISTER; }
+};
+
+unsigned ram(unsigned address)
+{
+    return chip().cpu->registers[address]->value.get();
+}
+
+void set_ram(unsigned address, unsigned value)
+{
+    chip().cpu->registers[address]->value.put(value & 0xFF);
+}
+
+std::string text(const char *format, ...)
+    __attribute__((format(printf, 1, 2)));
+
+std::string text(const char *format, ...)
+{
+    char buffer[160];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(buffer, sizeof buffer, format, arguments);
+    va_end(arguments);
+    return buffer;
+}
+
+} // namespace
+
+UsbEngine &usb_engine()
+{
+    static UsbEngine instance;
+    return instance;
+}
+
+void UsbEngine::attach()
+{
+    Register **registers = chip().cpu->registers;
+    for (unsigned address = UFRML; address < UEP0 + ENDPOINTS; address++)
+        registers[address] = new UsbRegister(chip().cpu, address);
+    for (unsigned address = RAM_FIRST; address <= RAM_LAST; address++) {
+        auto *byte = new UsbRam(chip().cpu, address);
+        byte->value.put(registers[address]->get_value());
+        registers[address] = byte;
+    }
+    chip().add_on_reset([this](RESET_TYPE) { reset(); });
+}
+
+void UsbEngine::reset()
+{
+    for (uint8_t &r : regs_)
+        r = 0;
+    fifo_.clear();
+    status_shown_ = set_address_open_ = reset_seen_ = false;
+}
+
+void UsbEngine::mistake(const std::string &what)
+{
+    if (mistakes.size() < MISTAKES_MAX)
+        mistakes.push_back(text("cycle %llu, address 0x%04x: ",
+                                (unsigned long long)chip().now(),
+                                chip().cpu->pc->value * 2) + what);
+}
+
+bool UsbEngine::connected() const
+{
+    return value(UCON) & USBEN && value(UCFG) & UPUEN &&
+           !(value(UCFG) & UTRDIS);
+}
+
+// ---- interrupts -----------------------------------------------------------
+
+void UsbEngine::update_interrupt()
+{
+    if (reg(UEIR) & reg(UEIE))
+        reg(UIR) |= UERRIF;
+    else
+        reg(UIR) &= ~UERRIF;
+    Register *flags = chip().cpu->registers[PIR2];
+    if (reg(UIR) & reg(UIE) && !(flags->get_value() & USBIF))
+        flags->put(flags->get_value() | USBIF);
+}
+
+void UsbEngine::raise(uint8_t flag)
+{
+    reg(UIR) |= flag;
+    update_interrupt();
+}
+
+void UsbEngine::flag_error(uint8_t flag)
+{
+    reg(UEIR) |= flag;
+    update_interrupt();
+}
+
+void UsbEngine::push_status(uint8_t status)
+{
+    fifo_.push_back(status);
+    if (fifo_.size() == 1) {
+        status_shown_ = true;
+        raise(TRNIF);
+    }
+}
+
+// Clearing TRNIF advances the FIFO; the next entry shows up a little later.
+void UsbEngine::pop_status()
+{
+    if (!status_shown_)
+        return;
+    status_shown_ = false;
+    fifo_.erase(fifo_.begin());
+    if (fifo_.empty())
+        return;
+    chip().at(chip().now() + TRNIF_AGAIN_CYCLES, [this] {
+        if (!fifo_.empty() && !status_shown_) {
+            status_shown_ = true;
+            raise(TRNIF);
+        }
+    });
+}
+
+// ---- registers, seen from the firmware ------------------------------------
+
+unsigned UsbEngine::read(unsigned address)
+{
+    if (address != USTAT)
+        return reg(address);
+    if (!(reg(UIR) & TRNIF))
+        mistake("USTAT read without TRNIF");
+    return status_shown_ ? fifo_.front() : 0;
+}
+
+void UsbEngine::write_ucon(uint8_t value)
+{
+    uint8_t before = reg(UCON);
+    uint8_t after = value & (PPBRST | USBEN | RESUME | SUSPND);
+    after |= before & SE0;
+    after |= before & value & PKTDIS;       // firmware can only clear it
+    reg(UCON) = after;
+    if (!(before & USBEN) && after & USBEN) {
+        if (reg(UCFG) & PPB)
+            mistake("ping-pong buffering is not modelled: use PPB = 0");
+        if (!(reg(UCFG) & FSEN))
+            mistake("FSEN is off: the device would run at low speed");
+    }
+    if (before & USBEN && !(after & USBEN)) {
+        fifo_.clear();
+        status_shown_ = false;
+        reg(UIR) = 0;
+        reg(UEIR) = 0;
+        reg(UADDR) = 0;
+        reg(UCON) &= ~PKTDIS;
+    }
+}
+
+void UsbEngine::write_uir(uint8_t value)
+{
+    uint8_t before = reg(UIR);
+    reg(UIR) = before & (value | UERRIF);   // flags are only cleared
+    if (before & ~reg(UIR) & TRNIF)
+        pop_status();
+    if (before & ~reg(UIR) & URSTIF)
+        reset_seen_ = false;
+    update_interrupt();
+}
+
+void UsbEngine::write(unsigned address, unsigned value)
+{
+    switch (address) {
+    case UCON:
+        write_ucon(value);
+        return;
+    case UIR:
+        write_uir(value);
+        return;
+    case UEIR:
+        reg(UEIR) &= value;
+        update_interrupt();
+        return;
+    case USTAT:
+    case UFRML:
+    case UFRMH:
+        mistake(text("write to read-only register 0x%03x", address));
+        return;
+    case UADDR:
+        if (value & 0x7F && set_address_open_)
+            mistake("UADDR written before the status stage of SET_ADDRESS");
+        reg(UADDR) = value & 0x7F;
+        return;
+    case UCFG:
+        if (reg(UCON) & USBEN && value != reg(UCFG))
+            mistake("UCFG changed while the module is on");
+        reg(UCFG) = value;
+        return;
+    default:
+        reg(address) = value;
+        update_interrupt();
+    }
+}
+
+// ---- buffer descriptors ----------------------------------------------------
+
+UsbEngine::Descriptor UsbEngine::descriptor(unsigned endpoint, bool in) const
+{
+    unsigned at = RAM_FIRST + (endpoint * 2 + in) * DESCRIPTOR_BYTES;
+    unsigned stat = ram(at);
+    return {stat, ram(at + 1) | (stat & 3) << 8,
+            ram(at + 2) | ram(at + 3) << 8, at};
+}
+
+bool UsbEngine::endpoint_on(unsigned endpoint, bool in) const
+{
+    return value(UEP0 + endpoint) & (in ? EPINEN : EPOUTEN);
+}
+
+bool UsbEngine::buffer_fits(const Descriptor &d, unsigned count)
+{
+    unsigned first_free = RAM_FIRST;
+    for (unsigned n = 0; n < ENDPOINTS; n++) {
+        if (value(UEP0 + n) & (EPINEN | EPOUTEN))
+            first_free = RAM_FIRST + (n + 1) * 2 * DESCRIPTOR_BYTES;
+    }
+    if (d.address >= first_free && d.address + count <= RAM_LAST + 1)
+        return true;
+    mistake(text("descriptor 0x%03x: buffer 0x%03x + %u is outside "
+                 "0x%03x..0x7FF", d.at, d.address, count, first_free));
+    return false;
+}
+
+bool UsbEngine::owned(unsigned address, std::string &what) const
+{
+    for (unsigned n = 0; n < ENDPOINTS; n++) {
+        for (bool in : {false, true}) {
+            if (!endpoint_on(n, in))
+                continue;
+            Descriptor d = descriptor(n, in);
+            if (!(d.stat & UOWN))
+                continue;
+            const char *name = in ? "IN" : "OUT";
+            if (address >= d.address && address < d.address + d.count) {
+                what = text("buffer of endpoint %u %s", n, name);
+                return true;
+            }
+            if (address > d.at && address < d.at + DESCRIPTOR_BYTES) {
+                what = text("descriptor of endpoint %u %s", n, name);
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+void UsbEngine::ram_written(unsigned address, unsigned old_value,
+                            unsigned value)
+{
+    if (!(reg(UCON) & USBEN) || reg(UCON) & (PKTDIS | SE0) || reset_seen_)
+        return;
+    unsigned slot = (address - RAM_FIRST) / DESCRIPTOR_BYTES;
+    bool stat = address % DESCRIPTOR_BYTES == 0 && slot < ENDPOINTS * 2 &&
+                endpoint_on(slot / 2, slot & 1);
+    if (stat) {
+        if (old_value & UOWN)
+            mistake(text("descriptor 0x%03x written (0x%02x -> 0x%02x) while "
+                         "the engine owns it", address, old_value, value));
+        if (value & UOWN) {
+            Descriptor d = descriptor(slot / 2, slot & 1);
+            if (buffer_fits(d, d.count) && d.count > PACKET_MAX)
+                mistake(text("descriptor 0x%03x: %u bytes are more than a "
+                             "packet", address, d.count));
+        }
+        return;
+    }
+    std::string what;
+    if (owned(address, what))
+        mistake(text("0x%03x written while the engine owns it: ", address) +
+                what);
+}
+
+void UsbEngine::write_back(const Descriptor &d, Token token, unsigned count)
+{
+    set_ram(d.at + 1, count & 0xFF);
+    set_ram(d.at, (d.stat & DTS) | unsigned(token) << 2 | (count >> 8 & 3));
+}
+
+// ---- the bus -----------------------------------------------------------------
+
+Handshake UsbEngine::begin(Packet &packet)
+{
+    unsigned n = packet.endpoint;
+    if (!connected() || packet.address != reg(UADDR) || reg(UCON) & SUSPND)
+        return Handshake::None;
+    uint8_t control = reg(UEP0 + n);
+    bool in = packet.token == Token::In;
+    if (!(control & (in ? EPINEN : EPOUTEN)))
+        return Handshake::None;
+    if (packet.token == Token::Setup) {
+        bool ready = !(control & EPCONDIS) && fifo_.size() < STATUS_FIFO_DEPTH
+                     && descriptor(n, false).stat & UOWN;
+        return ready ? Handshake::Ack : Handshake::None;
+    }
+    Descriptor d = descriptor(n, in);
+    if (reg(UCON) & PKTDIS || fifo_.size() >= STATUS_FIFO_DEPTH ||
+        !(d.stat & UOWN))
+        return Handshake::Nak;
+    if (d.stat & BSTALL) {
+        reg(UEP0 + n) |= EPSTALL;
+        raise(STALLIF);
+        return Handshake::Stall;
+    }
+    if (in) {
+        packet.toggle = d.stat & DTS ? 1 : 0;
+        packet.data.clear();
+        if (buffer_fits(d, d.count)) {
+            for (unsigned i = 0; i < d.count; i++)
+                packet.data.push_back(ram(d.address + i));
+        }
+    }
+    return Handshake::Ack;
+}
+
+void UsbEngine::complete(const Packet &packet)
+{
+    bool in = packet.token == Token::In;
+    unsigned n = packet.endpoint;
+    Descriptor d = descriptor(n, in);
+    if (!(d.stat & UOWN) || reg(UCON) & SE0)
+        return;
+    unsigned count = packet.data.size();
+    if (!in) {
+        // Table 17-3: a packet with the wrong toggle is acknowledged and lost.
+        bool wrong = d.stat & DTSEN && packet.toggle != (d.stat & DTS ? 1u : 0u);
+        if (wrong && packet.token == Token::Out)
+            return;
+        if (count > d.count) {
+            mistake(text("descriptor 0x%03x: packet of %u bytes for a buffer "
+                         "of %u", d.at, count, d.count));
+            count = d.count;
+        }
+        if (buffer_fits(d, count)) {
+            for (unsigned i = 0; i < count; i++)
+                set_ram(d.address + i, packet.data[i]);
+        }
+    }
+    if (packet.token == Token::Setup) {
+        reg(UCON) |= PKTDIS;
+        set_address_open_ = count >= 2 && packet.data[0] == 0 &&
+                            packet.data[1] == 5;
+    } else if (in && n == 0) {
+        set_address_open_ = false;
+    }
+    write_back(d, packet.token, count);
+    push_status(n << 3 | (in ? 4 : 0));
+}
+
+void UsbEngine::start_of_frame(unsigned number)
+{
+    bus_activity();
+    reg(UFRML) = number & 0xFF;
+    reg(UFRMH) = number >> 8 & 7;
+    if (connected() && !(reg(UCON) & SUSPND))
+        raise(SOFIF);
+}
+
+void UsbEngine::bus_reset(bool active)
+{
+    if (!(reg(UCON) & USBEN))
+        return;
+    bus_activity();
+    if (!active) {
+        reg(UCON) &= ~SE0;
+        return;
+    }
+    reg(UCON) |= SE0;
+    reg(UCON) &= ~PKTDIS;
+    reg(UADDR) = 0;
+    set_address_open_ = false;
+    reset_seen_ = true;
+    raise(URSTIF);
+}
+
+void UsbEngine::bus_idle()
+{
+    if (connected())
+        raise(IDLEIF);
+}
+
+void UsbEngine::bus_activity()
+{
+    if (connected() && reg(UCON) & SUSPND)
+        raise(ACTVIF);
+}
+
+} // namespace lathe

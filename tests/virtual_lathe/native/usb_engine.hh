@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The USB serial interface engine of the PIC18F4550 (data sheet chapter 17):
+// special function registers, buffer descriptors in dual-port RAM, and the
+// answers to tokens from the bus.  It also keeps a list of mistakes: things
+// the firmware does that the data sheet forbids or that race with the engine.
+
+#ifndef VIRTUAL_LATHE_USB_ENGINE_HH
+#define VIRTUAL_LATHE_USB_ENGINE_HH
+
+#include "chip.hh"
+
+namespace lathe {
+
+enum class Handshake { None = 0, Ack = 1, Nak = 2, Stall = 3 };
+enum class Token { Out = 1, In = 9, Setup = 13 };
+
+struct Packet {
+    Token token;
+    unsigned address, endpoint;
+    unsigned toggle;                // 0 or 1: DATA0 or DATA1
+    std::vector<uint8_t> data;
+};
+
+class UsbEngine {
+public:
+    void attach();
+    // The device shows itself on the bus: module on, pull-up on.
+    bool connected() const;
+
+    // A transaction in two halves.  begin() answers the token; for IN it
+    // fills in data and toggle.  complete() is called when the last packet
+    // has gone over the bus, and only if begin() answered Ack.
+    Handshake begin(Packet &packet);
+    void complete(const Packet &packet);
+
+    void start_of_frame(unsigned number);
+    void bus_reset(bool active);
+    void bus_idle();                // 3 ms without any packet
+    void bus_activity();            // resume signalling or a packet
+    void host_error() { flag_error(0x10); }    // BTOEF: bus turn-around
+
+    unsigned read(unsigned address);
+    void write(unsigned address, unsigned value);
+    unsigned value(unsigned address) const { return regs_[address - UFRML]; }
+    void ram_written(unsigned address, unsigned old_value, unsigned value);
+    void reset();
+    void mistake(const std::string &text);
+    std::vector<std::string> mistakes;
+
+private:
+    struct Descriptor { unsigned stat, count, address, at; };
+    Descriptor descriptor(unsigned endpoint, bool in) const;
+    bool buffer_fits(const Descriptor &d, unsigned count);
+    void write_back(const Descriptor &d, Token token, unsigned count);
+    void push_status(uint8_t status);
+    void pop_status();
+    void raise(uint8_t flag);
+    void flag_error(uint8_t flag);
+    void update_interrupt();
+    void write_ucon(uint8_t value);
+    void write_uir(uint8_t value);
+    bool owned(unsigned address, std::string &what) const;
+    bool endpoint_on(unsigned endpoint, bool in) const;
+
+    uint8_t &reg(unsigned address) { return regs_[address - UFRML]; }
+    uint8_t regs_[UEP0 + 16 - UFRML] = {};
+    std::vector<uint8_t> fifo_;     // USTAT entries, oldest first
+    bool status_shown_ = false;
+    bool set_address_open_ = false; // SET_ADDRESS without its status stage
+    bool reset_seen_ = false;       // a bus reset nobody has handled yet
+};
+
+UsbEngine &usb_engine();
+
+} // namespace lathe
+
+#endif

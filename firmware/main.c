@@ -122,11 +122,9 @@ void main(void)
     usb_init();
     INTCON = INTCON_BOTH_LEVELS;
     for (;;) {
-        __asm clrwdt
-__endasm
-;
-machine_poll();
-frame_poll();
-led_poll();
-}
+        __asm__("clrwdt");
+        machine_poll();
+        frame_poll();
+        led_poll();
+    }
 }

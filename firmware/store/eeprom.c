@@ -31,9 +31,7 @@ void eeprom_write(uint8_t address, uint8_t value)
     EECON1 |= EECON1_WR;
     INTCON |= interrupts;
     while (EECON1 & EECON1_WR) {
-        __asm clrwdt
-__endasm
-;
-}
-EECON1 = 0;
+        __asm__("clrwdt");
+    }
+    EECON1 = 0;
 }

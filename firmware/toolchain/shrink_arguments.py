@@ -161,6 +161,8 @@ def check_stack(program: Program) -> None:
         while todo:
             index = todo.pop()
             line = function.body[index]
+            if line.op == "CALL" and line.args[0].startswith("__gptrput"):
+                raise RefusalError(f"{function.name}: write through a generic pointer; use __data")
             here = depth[index] + _growth(function, index)
             if line.op in ("RETURN", "RETFIE") and here != 0:
                 raise RefusalError(f"{function.name}: stack is off by {here} at a return")

@@ -20,6 +20,7 @@ from collections import Counter
 from pathlib import Path
 
 from shrink_arguments import check_stack, static_arguments
+from shrink_banks import drop_bank_selections
 from shrink_flow import Liveness
 from shrink_layout import check_reach, order, shorten
 from shrink_model import Program, RefusalError, read_program, write_program
@@ -55,6 +56,7 @@ class Shrinker:
     def __init__(self, program: Program, assembly: str, registers: int, saving: set[str]) -> None:
         """Find what is called from where; RefusalError where that is not sound."""
         self.program = program
+        self.assembly = assembly
         self.limit = registers
         self.steps: Counter[str] = Counter()
         self.order: list[str] = []
@@ -116,6 +118,9 @@ class Shrinker:
         self._place_registers()
         check_stack(self.program)
         jumps_to_return(self.program)
+        before = self.size()
+        drop_bank_selections(self.program, self.assembly, self.roots)
+        self._count("bank selections", before)
         before = self.size()
         tail_calls(self.program)
         self._count("tail calls", before)

@@ -53,10 +53,29 @@ BRANCH = {
     "BOV": "OV",
     "BNOV": "OV",
 }
-INERT = set(
-    "BANKSEL NOP CLRWDT LFSR MOVLB GOTO BRA CALL RCALL RETURN RETFIE RESET SLEEP "
-    "TBLRD* TBLRD*+ TBLRD*- TBLRD+* TBLWT* TBLWT*+ TBLWT*- TBLWT+*".split()
-)
+INERT = {
+    "BANKSEL",
+    "NOP",
+    "CLRWDT",
+    "LFSR",
+    "MOVLB",
+    "GOTO",
+    "BRA",
+    "CALL",
+    "RCALL",
+    "RETURN",
+    "RETFIE",
+    "RESET",
+    "SLEEP",
+    "TBLRD*",
+    "TBLRD*+",
+    "TBLRD*-",
+    "TBLRD+*",
+    "TBLWT*",
+    "TBLWT*+",
+    "TBLWT*-",
+    "TBLWT+*",
+}
 JUMPS = {"GOTO", "BRA"}
 
 
@@ -224,7 +243,11 @@ class Liveness:
         self.names: list[str] = []
         self.common = self.mask({"W"} | FLAGS)
         self.entry = dict.fromkeys(program.functions, 0)
-        self.exit = {name: self.common if name in roots else 0 for name in program.functions}
+        result = self.mask({"W"})
+        self.exit = {name: result if name in roots else 0 for name in program.functions}
+        for name, function in program.functions.items():
+            if any(line.op == "RETFIE" for line in function.body):
+                self.exit[name] = self.common
         self.after = {name: [0] * len(f.body) for name, f in program.functions.items()}
         self.graph = {name: successors(f) for name, f in program.functions.items()}
         self.effects = {

@@ -15,17 +15,66 @@ SHORT = {"CALL": "RCALL", "GOTO": "BRA"}
 
 
 def order(program: Program) -> list[str]:
-    """Return the functions in an order that puts callers near what they call."""
-    weight: Counter[tuple[str, str]] = Counter()
+    """Return the functions in an order in which as many calls as possible are short.
+
+    Starts from chains of functions that call each other most, then moves single
+    functions next to their callers or callees as long as that helps.
+    """
+    calls = _calls(program)
+    sizes = {name: function.size() for name, function in program.functions.items()}
+    names = _chained(program, calls)
+    best = _long_calls(names, calls, sizes)
+    neighbours: dict[str, set[str]] = {name: set() for name in names}
+    for caller, _, called in calls:
+        neighbours[caller].add(called)
+        neighbours[called].add(caller)
+    improved = True
+    while improved:
+        improved = False
+        for name in list(program.functions):
+            for beside in sorted(neighbours[name] - {name}):
+                for side in (0, 1):
+                    rest = [other for other in names if other != name]
+                    place = rest.index(beside) + side
+                    tried = [*rest[:place], name, *rest[place:]]
+                    cost = _long_calls(tried, calls, sizes)
+                    if cost < best:
+                        names, best, improved = tried, cost, True
+    return names
+
+
+def _calls(program: Program) -> list[tuple[str, int, str]]:
+    """Return caller, offset in the caller and called function of each call."""
+    found = []
     for name, function in program.functions.items():
+        offset = 0
         for line in function.body:
-            target = line.args[0] if line.op in ("CALL", "GOTO") else ""
-            if target in program.functions and target != name:
-                weight[min(name, target), max(name, target)] += 1
+            if line.op in SHORT and line.args[0] in program.functions:
+                found.append((name, offset, line.args[0]))
+            offset += line.size()
+    return found
+
+
+def _long_calls(names: list[str], calls: list[tuple[str, int, str]], sizes: dict[str, int]) -> int:
+    """Return how many calls do not reach in an order, with the sizes given."""
+    place: dict[str, int] = {}
+    address = 0
+    for name in names:
+        place[name] = address
+        address += sizes[name]
+    return sum(
+        not -2046 <= place[called] - place[caller] - offset <= 2048
+        for caller, offset, called in calls
+    )
+
+
+def _chained(program: Program, calls: list[tuple[str, int, str]]) -> list[str]:
+    """Return the functions in chains, joined in the order of the number of calls."""
+    weight = Counter((caller, called) for caller, _, called in calls if caller != called)
     chain = {name: [name] for name in program.functions}
-    for (one, two), _ in sorted(weight.items(), key=lambda item: (-item[1], item[0])):
-        if chain[one] is not chain[two]:
-            merged = _joined(chain[one], chain[two], one, two)
+    for (caller, called), _ in sorted(weight.items(), key=lambda item: (-item[1], item[0])):
+        if chain[caller] is not chain[called]:
+            merged = chain[caller] + chain[called]
             for name in merged:
                 chain[name] = merged
     result: list[str] = []
@@ -33,13 +82,6 @@ def order(program: Program) -> list[str]:
         if name not in result:
             result += chain[name]
     return result
-
-
-def _joined(first: list[str], second: list[str], one: str, two: str) -> list[str]:
-    """Join two chains such that `one` and `two` come as near as can be."""
-    left = first if first.index(one) * 2 >= len(first) else first[::-1]
-    right = second if second.index(two) * 2 <= len(second) else second[::-1]
-    return left + right
 
 
 def shorten(program: Program, names: list[str]) -> int:

@@ -209,7 +209,7 @@ class _Reader:
                 args[position] = f"{self.owner}@{arg}"
             elif "r0x" in arg:
                 raise self.refuse("address of a register", line)
-            elif arg.upper() in UNTRACKED:
+            elif arg in UNTRACKED:
                 raise self.refuse("core register by the name of a variable", line)
         self.body.append(Line(parts[0].upper(), args))
 

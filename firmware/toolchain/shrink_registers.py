@@ -148,6 +148,7 @@ class Interference:
     """Which registers of a group of functions must not share a place."""
 
     def __init__(self, program: Program, live: Liveness, kept: set[str], group: set[str]) -> None:
+        """Look at the functions of the group; those in `kept` save what they use."""
         self.live = live
         self.registers = sorted(set().union(*(program.functions[f].registers() for f in group)))
         self.edges = dict.fromkeys(self.registers, 0)

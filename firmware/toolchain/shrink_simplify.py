@@ -6,7 +6,7 @@ from shrink_model import SKIPS, Function, Line, Program
 from shrink_registers import drop_lines
 
 
-def _after_skip(body: list[Line], index: int) -> bool:
+def after_skip(body: list[Line], index: int) -> bool:
     """Tell whether a line is the one that a skip instruction skips."""
     index -= 1
     while index > 0 and not body[index].op:
@@ -23,7 +23,7 @@ def drop_unneeded(program: Program, live: Liveness) -> int:
             what = effect(line)
             if what.pure or line.op == "MOVLW" or line.is_("CLRF", "WREG"):
                 needed = any(live.needed(name, index, thing) for thing in what.writes)
-                if not needed and not _after_skip(function.body, index):
+                if not needed and not after_skip(function.body, index):
                     gone.append(index)
         saved += sum(function.body[i].size() for i in gone)
         drop_lines(function, gone)
@@ -48,12 +48,12 @@ def _repeated(name: str, function: Function, live: Liveness) -> list[int]:
     gone = []
     body = function.body
     for index, line in enumerate(body):
-        skipped = _after_skip(body, index)
+        skipped = after_skip(body, index)
         if line.op == "MOVFF" and line.args[0] == line.args[1] and not skipped:
             gone.append(index)
             continue
         if not skipped and _is_register(line) and line.args[0] in equal:
-            flags = line.op == "MOVF" and any(live.needed(name, index, f) for f in FLAGS)
+            flags = any(live.needed(name, index, f) for f in effect(line).writes & FLAGS)
             if line.op == "MOVWF" or (line.args[1] == "W" and not flags):
                 gone.append(index)
                 continue
@@ -91,7 +91,7 @@ def tail_calls(program: Program) -> int:
             if (
                 body[index].op == "CALL"
                 and body[index + 1].op == "RETURN"
-                and not (_after_skip(body, index))
+                and not (after_skip(body, index))
             ):
                 body[index].op = "GOTO"
                 gone.append(index + 1)

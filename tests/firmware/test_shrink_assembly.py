@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The whole-program pass over SDCC's assembly: each rule and each refusal."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+TOOL = ROOT / "firmware/toolchain/shrink_assembly.py"
+
+HEAD = """
+STATUS	equ	0xfd8
+FSR1L	equ	0xfe1
+FSR2L	equ	0xfd9
+POSTINC1	equ	0xfe6
+POSTDEC1	equ	0xfe5
+PREINC1	equ	0xfe4
+PLUSW2	equ	0xfdb
+PCL	equ	0xff9
+	global	_main
+.registers	udata_ovr	0x0000
+r0x00	res	1
+r0x01	res	1
+r0x02	res	1
+udata_t_0	udata
+_x	res	1
+udata_t_1	udata
+_y	res	1
+"""
+
+
+def function(name: str, body: str, saves: str = "") -> str:
+    """Write a function as SDCC does: saves, body, restores in opposite order, return."""
+    registers = saves.split()
+    lines = [f"S_t_{name}\tcode", f"{name}:"]
+    lines += [f"\tMOVFF\t{r}, POSTDEC1" for r in registers]
+    lines += [
+        line if line.endswith(":") else f"\t{line}" for line in map(str.strip, body.split(";"))
+    ]
+    lines += [f"\tMOVFF\tPREINC1, {r}" for r in reversed(registers)]
+    return "\n".join([*lines, "\tRETURN", ""])
+
+
+def run_tool(
+    folder: Path, *functions: str, asm: str = "", head: str = HEAD, options: str = ""
+) -> subprocess.CompletedProcess[str]:
+    """Run the pass on one file made of the functions, with `asm` as hand-written assembly."""
+    (folder / "t.asm").write_text(head + "".join(functions) + "\tend\n")
+    (folder / "hand.asm").write_text(asm)
+    return subprocess.run(
+        [sys.executable, TOOL, *options.split(), "--asm", "hand.asm", "-o", "out.asm", "t.asm"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def shrunk(folder: Path, *functions: str, asm: str = "", options: str = "") -> dict[str, list[str]]:
+    """Return what the pass makes: for each function its lines, `head` for all before them."""
+    result = run_tool(folder, *functions, asm=asm, options=options)
+    assert result.returncode == 0, result.stderr
+    found: dict[str, list[str]] = {"head": []}
+    name = "head"
+    for line in (folder / "out.asm").read_text().splitlines()[:-1]:
+        if re.match(r"_[a-z]\w*:", line):
+            name = line[:-1]
+            found[name] = []
+        else:
+            found[name].append(" ".join(line.split()))
+    return found
+
+
+def refusal(folder: Path, *functions: str, asm: str = "", head: str = HEAD) -> str:
+    """Return the message with which the pass refuses; it must not write anything."""
+    result = run_tool(folder, *functions, asm=asm, head=head)
+    assert result.returncode == 1
+    assert not (folder / "out.asm").exists()
+    return result.stderr
+
+
+LEAF = function("_leaf", "MOVFF _x, r0x00; INCF r0x00, F; MOVFF r0x00, _x", "r0x00")
+
+
+def register_of(lines: list[str]) -> set[str]:
+    """Return the registers named in lines."""
+    return set(re.findall(r"\b[ri]0x\w\w\b", " ".join(lines)))
+
+
+def test_a_value_needed_after_a_call_gets_a_register_the_callee_leaves_alone(
+    tmp_path: Path,
+) -> None:
+    caller = function(
+        "_main", "MOVFF _x, r0x00; CALL _leaf; MOVFF r0x00, _y; CALL _leaf; MOVFF r0x00, _x"
+    )
+    out = shrunk(tmp_path, caller, LEAF)
+    assert not any("POSTDEC1" in line or "PREINC1" in line for line in out["_leaf"])
+    assert len(register_of(out["_main"])) == 1
+    assert not register_of(out["_main"]) & register_of(out["_leaf"])
+
+
+def test_a_value_not_needed_after_a_call_shares_the_callees_register(tmp_path: Path) -> None:
+    caller = function("_main", "MOVFF _x, r0x00; MOVFF r0x00, _y; CALL _leaf")
+    out = shrunk(tmp_path, caller, LEAF)
+    assert register_of(out["_main"]) == register_of(out["_leaf"]) == {"r0x00"}
+
+
+def test_a_value_needed_on_the_next_round_of_a_loop_counts_as_needed(tmp_path: Path) -> None:
+    caller = function(
+        "_main", "MOVFF _x, r0x00; _00001_DS_:; CALL _leaf; DECFSZ r0x00, F; BRA _00001_DS_"
+    )
+    out = shrunk(tmp_path, caller, LEAF)
+    assert not register_of(out["_main"]) & register_of(out["_leaf"])
+
+
+ADD = (
+    "S_t_add\tcode\n_add:\n\tMOVFF\tFSR2L, POSTDEC1\n\tMOVFF\tFSR1L, FSR2L\n"
+    "\tMOVFF\tr0x00, POSTDEC1\n\tMOVLW\t0x02\n\tMOVFF\tPLUSW2, r0x00\n"
+    "\tMOVLW\t0x03\n\tMOVFF\tPLUSW2, _y\n\tMOVF\tr0x00, W\n\tADDWF\t_y, W, B\n"
+    "\tMOVFF\tPREINC1, r0x00\n\tMOVFF\tPREINC1, FSR2L\n\tRETURN\n"
+).replace("\tADDWF", "\tBANKSEL\t_y\n\tADDWF")
+CALL_ADD = (
+    "MOVLW 0x11; MOVWF POSTDEC1; MOVLW 0x22; MOVWF POSTDEC1; CALL _add; "
+    "BANKSEL _x; MOVWF _x, B; MOVF POSTINC1, F; MOVF POSTINC1, F; MOVLW 0x00"
+)
+
+
+def test_arguments_go_to_registers_instead_of_the_stack(tmp_path: Path) -> None:
+    out = shrunk(tmp_path, function("_main", CALL_ADD + "; " + CALL_ADD), ADD)
+    text = " ".join(out["_main"] + out["_add"])
+    assert not re.search("POSTDEC1|POSTINC1|PREINC1|FSR2L|PLUSW2", text)
+    first, second = re.findall(r"MOVWF (r0x\w+)", " ".join(out["_main"]))[:2]
+    assert f"MOVF {second}, W" in out["_add"]
+    assert f"MOVFF {first}, _y" in out["_add"]
+
+
+def test_arguments_stay_on_the_stack_when_one_call_has_another_form(tmp_path: Path) -> None:
+    odd = CALL_ADD.replace("CALL _add", "_00009_DS_:; CALL _add")
+    out = shrunk(tmp_path, function("_main", CALL_ADD + "; " + odd), ADD)
+    assert out["_main"].count("MOVWF POSTDEC1") == 4
+    assert "MOVFF PLUSW2, r0x00" in out["_add"]
+
+
+def test_arguments_of_hand_written_functions_stay_on_the_stack(tmp_path: Path) -> None:
+    out = shrunk(tmp_path, function("_main", CALL_ADD), asm=" global _add\n_add:\n")
+    assert out["_main"].count("MOVWF POSTDEC1") == 2
+
+
+INTERRUPT = (
+    "S_i\tcode\n_low_interrupt:\n\tMOVFF\tSTATUS, POSTDEC1\n\tMOVFF\tr0x00, POSTDEC1\n"
+    "\tMOVFF\t_x, r0x00\n\tCALL\t_leaf\n\tMOVFF\tr0x00, _y\n"
+    "\tMOVFF\tPREINC1, r0x00\n\tMOVFF\tPREINC1, STATUS\n\tRETFIE\n"
+)
+
+
+def test_the_interrupt_gets_registers_of_its_own(tmp_path: Path) -> None:
+    out = shrunk(tmp_path, function("_main", "MOVFF _x, r0x00; MOVFF r0x00, _y"), INTERRUPT, LEAF)
+    assert register_of(out["_main"]) == {"r0x00"}
+    assert register_of(out["_low_interrupt"] + out["_leaf"]) == {"i0x00", "i0x01"}
+    assert "registers_interrupt udata_acs" in out["head"]
+
+
+def test_a_function_of_interrupt_and_main_loop_keeps_its_saves(tmp_path: Path) -> None:
+    out = shrunk(tmp_path, function("_main", "CALL _leaf"), INTERRUPT, LEAF)
+    assert out["_leaf"][0] == "MOVFF r0x00, POSTDEC1"
+    assert out["_leaf"][-2] == "MOVFF PREINC1, r0x00"
+
+
+def test_with_too_few_registers_a_function_keeps_its_saves(tmp_path: Path) -> None:
+    caller = function("_main", "MOVFF _x, r0x00; CALL _leaf; MOVFF r0x00, _y")
+    out = shrunk(tmp_path, caller, LEAF, options="--registers 1")
+    assert register_of(out["_main"]) == {"r0x00"}
+    assert out["_leaf"][0] == "MOVFF r0x00, POSTDEC1"
+
+
+def test_an_instruction_whose_result_nobody_needs_goes(tmp_path: Path) -> None:
+    out = shrunk(
+        tmp_path,
+        function("_main", "MOVLW 0x05; MOVWF r0x00; MOVLW 0x06; MOVWF POSTDEC1; MOVF POSTINC1, F"),
+    )
+    assert out["_main"][:2] == ["MOVLW 0x06", "MOVWF POSTDEC1"]
+
+
+def test_what_a_skip_may_skip_stays(tmp_path: Path) -> None:
+    body = (
+        "MOVFF _x, r0x01; BTFSC r0x01, 2; MOVLW 0x05; MOVLW 0x06; MOVWF POSTDEC1; MOVF POSTINC1, F"
+    )
+    assert "MOVLW 0x05" in shrunk(tmp_path, function("_main", body))["_main"]
+
+
+def test_a_load_of_what_wreg_holds_goes_unless_its_flags_are_needed(tmp_path: Path) -> None:
+    keeps = (
+        "MOVFF _x, r0x00; INCF r0x00, W; MOVWF r0x01; MOVF r0x01, W; BNZ _00001_DS_; "
+        "MOVFF r0x01, _y; _00001_DS_:; MOVFF r0x01, _x"
+    )
+    assert "MOVF r0x00, W" in shrunk(tmp_path, function("_main", keeps))["_main"]
+    drops = keeps.replace("BNZ", "BNC").replace("INCF r0x00, W", "ADDWF r0x00, W")
+    assert "MOVF r0x00, W" not in shrunk(tmp_path, function("_main", drops))["_main"]
+
+
+def test_a_bank_is_selected_once_for_variables_that_share_it(tmp_path: Path) -> None:
+    body = (
+        "BANKSEL _x; CLRF _x, B; BANKSEL _y; CLRF _y, B; BANKSEL _z; CLRF _z, B; BANKSEL _x; "
+        "INCF _x, F, B"
+    )
+    out = shrunk(tmp_path, function("_main", body), asm="hand udata 0x400\n_z res 1\n")
+    assert [line for line in out["_main"] if "BANKSEL" in line] == [
+        "BANKSEL _x",
+        "BANKSEL _z",
+        "BANKSEL _x",
+    ]
+
+
+def test_a_bank_known_on_one_path_only_is_selected_again(tmp_path: Path) -> None:
+    body = (
+        "BANKSEL _x; CLRF _x, B; BZ _00001_DS_; BANKSEL _z; CLRF _z, B; _00001_DS_:; "
+        "BANKSEL _y; CLRF _y, B"
+    )
+    out = shrunk(tmp_path, function("_main", body), asm="hand udata 0x400\n_z res 1\n")
+    assert "BANKSEL _y" in out["_main"]
+
+
+def test_a_call_of_unknown_code_leaves_no_bank_known(tmp_path: Path) -> None:
+    body = "BANKSEL _x; CLRF _x, B; CALL _hand; BANKSEL _y; CLRF _y, B"
+    assert "BANKSEL _y" in shrunk(tmp_path, function("_main", body))["_main"]
+
+
+def test_variables_of_the_access_bank_need_no_bank(tmp_path: Path) -> None:
+    out = shrunk(
+        tmp_path, function("_main", "BANKSEL _z; CLRF _z, B"), asm="hand udata_acs\n_z res 1\n"
+    )
+    assert out["_main"][0] == "CLRF _z, A"
+
+
+def test_near_calls_are_short_and_far_ones_long(tmp_path: Path) -> None:
+    long = "; ".join(["CLRF _LATB"] * 1100)
+    calls = "CALL _leaf; CALL _far; CALL _farther; CALL _hand; CLRF _LATB"
+    out = shrunk(
+        tmp_path, function("_main", calls), LEAF, function("_far", long), function("_farther", long)
+    )
+    assert "RCALL _leaf" in out["_main"]
+    assert "CALL _hand" in out["_main"]
+    assert sum(line.startswith("CALL _far") for line in out["_main"]) == 1
+
+
+def test_a_call_before_a_return_becomes_a_jump(tmp_path: Path) -> None:
+    out = shrunk(tmp_path, function("_main", "CLRF _LATB; CALL _leaf"), LEAF)
+    assert out["_main"] == ["CLRF _LATB", "BRA _leaf"]
+
+
+def test_the_entries_of_a_jump_table_keep_their_size(tmp_path: Path) -> None:
+    body = (
+        "MOVLW 0x04; MOVWF PCL; _00001_DS_:; GOTO _00002_DS_; GOTO _00003_DS_; _00002_DS_:; "
+        "CLRF _LATB; _00003_DS_:; CLRF _LATC"
+    )
+    out = shrunk(tmp_path, function("_main", body))
+    assert sum(line.startswith("GOTO") for line in out["_main"]) == 2
+
+
+def test_private_names_of_two_files_stay_apart(tmp_path: Path) -> None:
+    for name in ("one", "two"):
+        body = function("_main" if name == "one" else "_other", "CALL _same") + function(
+            "_same", "CLRF _LATB" if name == "one" else "CLRF _LATC"
+        )
+        public = HEAD if name == "one" else HEAD.replace("_main", "_other")
+        (tmp_path / f"{name}.asm").write_text(re.sub(r"udata_t[^$]*", "", public) + body)
+    subprocess.run(
+        [sys.executable, TOOL, "-o", "out.asm", "one.asm", "two.asm"], cwd=tmp_path, check=True
+    )
+    text = (tmp_path / "out.asm").read_text()
+    assert "_same__one:\n\tCLRF\t_LATB" in text
+    assert "_same__two:\n\tCLRF\t_LATC" in text
+
+
+def test_the_report_names_bytes_before_and_after(tmp_path: Path) -> None:
+    result = run_tool(
+        tmp_path, function("_main", "CLRF _LATB; CALL _leaf"), LEAF, options="--report"
+    )
+    assert re.search(r"^t +28 +16$", result.stdout, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("body", "message"),
+    [
+        ("CALL _main", "recursion"),
+        ("FROB r0x00", "unknown instruction"),
+        ("MOVLW LOW(r0x00)", "address of a register"),
+        ("MOVWF POSTDEC1", "stack is off by 1"),
+        ("BZ _00001_DS_; MOVWF POSTDEC1; _00001_DS_:; CLRF _x", "stack differs"),
+        ("CLRF _x, B", "wrong bank"),
+        ("MOVWF PCL; CLRF _x", "computed jump"),
+        ("GOTO _elsewhere", "jump out of the function"),
+        ("CLRF _POSTDEC1", "core register"),
+        ("CALL __gptrput1", "generic pointer"),
+    ],
+)
+def test_what_is_not_understood_is_refused(tmp_path: Path, body: str, message: str) -> None:
+    assert message in refusal(tmp_path, function("_main", body))
+
+
+def test_arithmetic_of_the_library_may_not_be_used_on_both_sides(tmp_path: Path) -> None:
+    message = refusal(
+        tmp_path, function("_main", "CALL __mulint"), INTERRUPT.replace("_leaf", "__mulint")
+    )
+    assert "called by interrupt and main loop: __mulint" in message
+
+
+def test_initialised_data_are_refused(tmp_path: Path) -> None:
+    head = HEAD + "idata_t_0\tidata\n_z\tDB\t0x01\n"
+    assert "initialised data" in refusal(tmp_path, LEAF.replace("_leaf", "_main"), head=head)

@@ -1,0 +1,149 @@
+#!/usr/bin/env bash
+# Checks everything that can be checked without running it. Every step prints
+# one line; a step that fails prints what it found, and the rest still runs.
+# SPDX-License-Identifier: Apache-2.0
+#
+# usage: lint.sh VENV
+#   VENV   Python environment that `make setup` has made
+#
+# Needs build/firmware/sfr.h, so build the firmware first (`make lint` does).
+set -euo pipefail
+
+venv=$(realpath "$1")
+cd "$(dirname "$0")/../.."
+failures=0
+
+# step NAME COMMAND...: runs it, shows its output only when it fails.
+step() {
+    local name=$1 output start=$SECONDS
+    shift
+    if output=$("$@" 2>&1); then
+        printf 'lint: %-34s ok, %d s\n' "$name" $((SECONDS - start))
+    else
+        printf 'lint: %-34s FAILED\n%s\n' "$name" "$output"
+        failures=$((failures + 1))
+    fi
+}
+
+# tracked PATTERN...: files of the project, new ones that git does not ignore
+# included, deleted ones not.
+tracked() {
+    git ls-files --cached --others --exclude-standard -- "$@" | sort -u |
+        while read -r file; do
+            [ ! -f "$file" ] || printf '%s\n' "$file"
+        done
+}
+
+mapfile -t firmware_c < <(tracked 'firmware/*.c' 'firmware/*.h')
+mapfile -t native < <(tracked 'tests/virtual_lathe/native/*.cc' \
+    'tests/virtual_lathe/native/*.hh' 'tests/virtual_lathe/native/*.h')
+mapfile -t assembly < <(tracked 'firmware/*.asm' 'tests/*.asm')
+mapfile -t python < <(tracked '*.py')
+mapfile -t shell < <(tracked '*.sh' .ci/run)
+mapfile -t formatted < <(printf '%s\n' "${firmware_c[@]}" "${native[@]}" |
+    grep -vx firmware/link/protocol.h)
+mapfile -t other_python < <(printf '%s\n' "${python[@]}" | grep -v '^host-cli/')
+
+# --- C ------------------------------------------------------------------------
+# The words that only SDCC knows are defined away; a special function register
+# is an ordinary variable then.
+check_c() {
+    [ -f build/firmware/sfr.h ] || {
+        echo "build/firmware/sfr.h is missing: run make firmware"
+        return 1
+    }
+    cppcheck --quiet --std=c99 --platform=avr8 --error-exitcode=1 \
+        --enable=all --suppressions-list=tests/lint/cppcheck-suppressions.txt \
+        -D__code= -D__data= '-D__interrupt(level)=' -D__sfr=extern \
+        '-D__at(address)=' -Ifirmware -Ibuild/firmware firmware
+}
+
+# --- limits of length -----------------------------------------------------------
+# short_enough COLUMNS LINES FILE...
+short_enough() {
+    local columns=$1 lines=$2
+    shift 2
+    LC_ALL=C.UTF-8 awk -v columns="$columns" -v lines="$lines" '
+        length($0) > columns {
+            printf "%s:%d: %d columns, at most %d\n", FILENAME, FNR,
+                length($0), columns
+            bad = 1
+        }
+        FNR == lines {
+            printf "%s: %d lines or more, fewer than %d wanted\n", FILENAME,
+                lines, lines
+            bad = 1
+        }
+        END { exit bad }' "$@"
+}
+
+# --- words ------------------------------------------------------------------------
+# A file that names a directory of somebody's machine works nowhere else, and
+# where packages come from is the user's choice. Addresses that are part of a
+# longer one (a URL, a relative path) are not meant.
+no_machine_paths() {
+    local places='(^|[^[:alnum:]_./~}<-])/(hom[e]|roo[t]|tm[p]|wor[k]|User[s])/'
+    local hosts='(pyp[i]|pythonhoste[d]|npmj[s]|crate[s])\.(org|com|io)'
+    ! git grep --untracked -nIE "$places|$hosts" -- . ':!LICENSE' ':!hw/*.kicad_*'
+}
+
+# Every source says under which licence it stands.
+licensed() {
+    local file missing=0
+    for file in "$@"; do
+        grep -q 'SPDX-License-Identifier' "$file" || [ ! -s "$file" ] || {
+            echo "$file: no SPDX-License-Identifier line"
+            missing=1
+        }
+    done
+    return $missing
+}
+
+# Every room says what lives in it.
+readmes() {
+    local room missing=0
+    for room in firmware firmware/*/ host-cli tests tests/*/; do
+        [ -n "$(git ls-files --cached --others --exclude-standard "$room")" ] ||
+            continue
+        [ -f "$room/README.md" ] || {
+            echo "${room%/}/README.md is missing"
+            missing=1
+        }
+    done
+    return $missing
+}
+
+shell_syntax() {
+    local file
+    for file in "$@"; do
+        bash -n "$file" || return 1
+    done
+}
+
+in_host_cli() (cd host-cli && "$@")
+
+step "cppcheck firmware" check_c
+step "clang-format" clang-format --dry-run --Werror "${formatted[@]}"
+step "C in 80 columns, under 400 lines" short_enough 80 400 "${firmware_c[@]}" \
+    "${native[@]}" "${assembly[@]}"
+step "Python in 100 columns, under 400" short_enough 100 400 "${python[@]}"
+step "ruff check" "$venv/bin/ruff" check --quiet .
+step "ruff format" "$venv/bin/ruff" format --quiet --diff .
+step "mypy host-cli" in_host_cli "$venv/bin/mypy"
+step "mypy firmware and tests" "$venv/bin/mypy" firmware/toolchain firmware/link \
+    docs tests
+step "protocol files up to date" "$venv/bin/python" \
+    firmware/link/generate_protocol.py --check
+step "documentation tables up to date" "$venv/bin/python" \
+    docs/generate_tables.py --check
+step "bash -n" shell_syntax "${shell[@]}"
+step "shellcheck" shellcheck --severity=warning "${shell[@]}"
+step "licence lines" licensed "${firmware_c[@]}" "${native[@]}" "${assembly[@]}" \
+    "${python[@]}" "${shell[@]}"
+step "a README in every room" readmes
+step "nothing of one machine" no_machine_paths
+
+if [ $failures -gt 0 ]; then
+    echo "lint: $failures of the steps above failed"
+    exit 1
+fi

@@ -195,6 +195,7 @@ def write_classes(nets: Nets) -> None:
              "pattern": name.replace("{slash}", "/")}
             for name, pins in sorted(nets.items())],
     }
+    project["board"] = {"design_settings": {"rules": {"min_resolved_spokes": 1}}}
     path.write_text(json.dumps(project, indent=2, sort_keys=True) + "\n", encoding="utf-8")
 
 
@@ -215,7 +216,7 @@ def _pours(board: Any) -> None:
     edge = 0.6
     areas = [("GND", (edge, edge, left - 0.05, placement.HEIGHT - edge), 0),
              ("MGND", (right + 0.05, edge, placement.WIDTH - edge, placement.HEIGHT - edge), 0),
-             ("VMOT", (171.0, 19.0, 184.5, 97.5), 1)]
+             ("VMOT", (168.0, 20.5, 184.5, 97.5), 1)]
     for net, box, priority in areas:
         for layer in (pcbnew.F_Cu, pcbnew.B_Cu):
             if net == "VMOT" and layer == pcbnew.F_Cu:
@@ -227,7 +228,7 @@ def _pours(board: Any) -> None:
             zone.SetLocalClearance(pcbnew.FromMM(0.4))
             zone.SetMinThickness(pcbnew.FromMM(0.3))
             zone.SetThermalReliefGap(pcbnew.FromMM(0.4))
-            zone.SetThermalReliefSpokeWidth(pcbnew.FromMM(0.8 if net == "GND" else 1.5))
+            zone.SetThermalReliefSpokeWidth(pcbnew.FromMM(0.5 if net == "GND" else 0.8))
             zone.SetIslandRemovalMode(pcbnew.ISLAND_REMOVAL_MODE_ALWAYS)
             zone.SetZoneName(f"{net} {board.GetLayerName(layer)}")
             board.Add(zone)

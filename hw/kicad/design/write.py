@@ -96,7 +96,7 @@ def _part(sheet: Sheet, part: Part, path: str) -> list[Any]:
         node.append([Atom("mirror"), Atom(part.mirror)])
     real = part.on_board
     node += [[Atom("unit"), Atom(str(part.unit))], [Atom("exclude_from_sim"), Atom("no")],
-             [Atom("in_bom"), Atom("yes" if real and not part.ref.startswith("H") else "no")],
+             [Atom("in_bom"), Atom("yes" if real and not part.ref.startswith(("H", "TP")) else "no")],
              [Atom("on_board"), Atom("yes")], [Atom("dnp"), Atom("no")],
              [Atom("uuid"), name_uuid("part", part.ref, part.unit)]]
     shown = {name: (text, x, y, justify) for name, text, x, y, justify in text_places(part)}

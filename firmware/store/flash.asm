@@ -64,7 +64,7 @@ _flash_read_u32:
 ; Reads 32 bits; PRODH and the last byte must repeat the sign of PRODL.
 _flash_read_i16:
         rcall   _flash_read_u32
-        movwf   FSR0H, A
+        movwf   TABLAT, A               ; free again
         movlw   0
         btfsc   PRODL, 7, A
         movlw   0xFF
@@ -72,7 +72,7 @@ _flash_read_i16:
         bra     too_large
         cpfseq  FSR0L, A
         bra     too_large
-        movf    FSR0H, W, A
+        movf    TABLAT, W, A
         return
 too_large:
         movlw   0x80                    ; -32768 or 32767, by the sign of

@@ -208,6 +208,8 @@ def finish(target: Path, routes: Path) -> None:
     _pours(board)
     silkscreen.write(pcbnew, board, at)
     pcbnew.ZONE_FILLER(board).Fill(board.Zones())
+    _stitch(board)
+    pcbnew.ZONE_FILLER(board).Fill(board.Zones())
     pcbnew.SaveBoard(str(target), board)
 
 
@@ -232,6 +234,26 @@ def _pours(board: Any) -> None:
             zone.SetIslandRemovalMode(pcbnew.ISLAND_REMOVAL_MODE_ALWAYS)
             zone.SetZoneName(f"{net} {board.GetLayerName(layer)}")
             board.Add(zone)
+
+
+def _stitch(board: Any) -> None:
+    """Join the two sides of each ground with vias wherever both have copper."""
+    pitch, ring = 7.0, 0.75
+    around = [(0.0, 0.0), (ring, 0.0), (-ring, 0.0), (0.0, ring), (0.0, -ring),
+              (0.55, 0.55), (0.55, -0.55), (-0.55, 0.55), (-0.55, -0.55)]
+    for net in ("GND", "MGND"):
+        zones = [zone for zone in board.Zones() if zone.GetNetname() == net]
+        for column in range(int(placement.WIDTH / pitch)):
+            for row in range(int(placement.HEIGHT / pitch)):
+                x, y = pitch * (column + 0.5), pitch * (row + 0.5)
+                if all(zone.HitTestFilledArea(zone.GetFirstLayer(), at(x + dx, y + dy), 0)
+                       for zone in zones for dx, dy in around):
+                    via = pcbnew.PCB_VIA(board)
+                    via.SetPosition(at(x, y))
+                    via.SetWidth(pcbnew.FromMM(0.8))
+                    via.SetDrill(pcbnew.FromMM(0.4))
+                    via.SetNet(board.FindNet(net))
+                    board.Add(via)
 
 
 if __name__ == "__main__":

@@ -37,6 +37,8 @@ WORDS: list[tuple[str, float, float, float, float]] = [
     ("STATUS", 7.3, 32.6, 0.9, 0), ("MOTOR ON", 152.0, 23.6, 0.8, 0),
     ("SUPPLY ON", 125.0, 31.6, 0.8, 0), ("DRIVERS ON", 24.5, 37.0, 0.8, 0),
 ]
+WORDS += [(f"{axis}{phase}", 85.3, top + 5.08 * (phase - 1), 0.8, 0)
+          for axis, top in (("Z", 32.0), ("X", 66.0)) for phase in (1, 2, 3, 4)]
 # Connector: words of its pins in order, offset from the pad in mm, size, angle.
 PINOUTS: dict[str, tuple[list[str], float, float, float, float]] = {
     "J5": (["COM", "1", "2", "3", "4", "COM"], -7.4, 0.0, 0.9, 0),
@@ -112,14 +114,16 @@ class Layer:
         self.board.Add(text)
         self.taken.append(box)
 
-    def reference(self, footprint: Any) -> bool:
-        """Move a part's reference to the first free place; False if there is none."""
-        text = footprint.Reference()
-        self.style(text, 0.8)
-        text.SetKeepUpright(True)
+    def inside(self, footprint: Any) -> bool:
+        """Put a part's reference in the middle of its body, if that is free."""
+        left, top, right, bottom = self.box(footprint.GetBoundingBox(False), 0.0)
+        return self.settle(footprint, [((left + right) / 2, (top + bottom) / 2)])
+
+    def beside(self, footprint: Any) -> bool:
+        """Put a part's reference at the first free place around it."""
         body = self.box(footprint.GetBoundingBox(False), 0.0)
         middle_x, middle_y = (body[0] + body[2]) / 2, (body[1] + body[3]) / 2
-        spots = [(middle_x, middle_y), (middle_x, body[1] - 0.8), (middle_x, body[3] + 0.8)]
+        spots = [(middle_x, body[1] - 0.8), (middle_x, body[3] + 0.8)]
         for across in (0.0, -1.5, 1.5, -3.0, 3.0, -5.0, 5.0, -7.0, 7.0):
             for away in (0.8, 1.3, 1.9):
                 spots += [(middle_x + across, body[1] - away), (middle_x + across, body[3] + away),
@@ -127,6 +131,13 @@ class Layer:
                           (body[2] + away + 0.8, middle_y + across)]
         spots += [(middle_x + dx, middle_y + dy) for dx in (-4, -3, -2, -1, 0, 1, 2, 3, 4)
                   for dy in (-4, -3, -2, -1, 0, 1, 2, 3, 4)]
+        return self.settle(footprint, spots)
+
+    def settle(self, footprint: Any, spots: list[tuple[float, float]]) -> bool:
+        """Put a reference at the first free spot; False if all are taken."""
+        text = footprint.Reference()
+        self.style(text, 0.8)
+        text.SetKeepUpright(True)
         for angle in (0, 90):
             text.SetTextAngleDegrees(angle)
             for x, y in spots:
@@ -158,8 +169,10 @@ def write(pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> None:
         except ValueError as error:
             problems.append(str(error))
     footprints = sorted(board.GetFootprints(), key=lambda part: part.GetReference())
-    for footprint in footprints:
-        if footprint.Reference().IsVisible() and not layer.reference(footprint):
-            problems.append(f"no room on the silkscreen for {footprint.GetReference()}")
+    outside = [part for part in footprints
+               if part.Reference().IsVisible() and not layer.inside(part)]
+    layer.taken += [layer.box(part.GetBoundingBox(False), -0.2) for part in footprints]
+    problems += [f"no room on the silkscreen for {part.GetReference()}"
+                 for part in outside if not layer.beside(part)]
     if problems:
         raise ValueError("\n".join(problems))

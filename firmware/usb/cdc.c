@@ -211,11 +211,6 @@ uint8_t cdc_request(void)
     return request == SEND_BREAK;
 }
 
-uint8_t cdc_dtr(void)
-{
-    return usb_line_state & LINE_STATE_DTR;
-}
-
 uint8_t cdc_received(void)
 {
     return usb_received;

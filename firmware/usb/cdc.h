@@ -40,7 +40,8 @@
  *
  * The buffer keeps its content after it was sent: the same reply can be sent
  * again by another cdc_send(). A reply that nobody collects is dropped when the
- * host closes the port (DTR falls), resets the bus or pulls the cable.
+ * host closes the port (DTR falls), resets the bus or pulls the cable. Replies
+ * do not wait for DTR: some programs never raise it.
  */
 #ifndef USB_CDC_H
 #define USB_CDC_H
@@ -63,14 +64,6 @@ void usb_service(void);
 
 /* Cable detection. Low interrupt, every millisecond. */
 void usb_tick(void);
-
-/* 1 = a host has configured the device. Any context. Stays 1 while the bus is
- * suspended. */
-uint8_t usb_configured(void);
-
-/* 1 = a program on the host holds the port open (DTR). Any context. Replies do
- * not depend on it: some programs never raise DTR. */
-uint8_t cdc_dtr(void);
 
 /* ---- Serial number ------------------------------------------------------ */
 

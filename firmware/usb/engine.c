@@ -98,27 +98,18 @@ static void bus_reset(void)
     UEP0 = 0;
     UEP1 = 0;
     UEP2 = 0;
+    usb_state = USB_DEFAULT;
     /* Transactions of the time before the reset are of no interest. The next
-     * entry of the FIFO shows up within 6 cycles of clearing TRNIF. */
+     * one shows up 6 cycles after clearing TRNIF: cdc_reset() takes longer. */
     for (i = 0; i < USTAT_DEPTH; i++) {
         UIR &= (uint8_t)~UIR_TRNIF;
-        __asm nop
-__endasm
-;
-__asm nop
-__endasm
-;
-__asm nop
-__endasm
-;
-}
-usb_state = USB_DEFAULT;
-cdc_reset();
-control_reset();
-UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
-UIE &= (uint8_t)~UIR_ACTVIF;
-UCON = UCON_USBEN; /* PKTDIS and SUSPND off */
-UIR &= (uint8_t)~UIR_URSTIF;
+        cdc_reset();
+    }
+    control_reset();
+    UEP0 = UEP_EPHSHK | UEP_EPOUTEN | UEP_EPINEN;
+    UIE &= (uint8_t)~UIR_ACTVIF;
+    UCON = UCON_USBEN; /* PKTDIS and SUSPND off */
+    UIR &= (uint8_t)~UIR_URSTIF;
 }
 
 /* 3 ms without traffic. The chip goes on cutting; only the transceiver sleeps
@@ -213,9 +204,4 @@ void usb_tick(void)
     if (UIR & UIE) {
         PIR2 |= PIR2_USBIF;
     }
-}
-
-uint8_t usb_configured(void)
-{
-    return usb_state == USB_CONFIGURED;
 }

@@ -118,6 +118,7 @@ class Chip:
     """
 
     def __init__(self, firmware: Path | str) -> None:
+        """Load the firmware into the chip of this process."""
         self.firmware = Path(firmware)
         self._native = library()
         if not self.firmware.exists():
@@ -250,8 +251,11 @@ class Chip:
 
     @property
     def nonvolatile_counts(self) -> dict[str, int]:
-        """Writes so far: ``eeprom_writes`` (bytes), ``flash_erases`` (blocks of 64 bytes),
-        ``flash_writes`` (blocks of 32), ``broken_unlocks`` (ignored write commands)."""
+        """Writes so far, by kind.
+
+        ``eeprom_writes`` (bytes), ``flash_erases`` (blocks of 64 bytes), ``flash_writes`` (blocks
+        of 32) and ``broken_unlocks`` (write commands the chip ignored).
+        """
         counts = NonvolatileCountsC()
         self._native.vl_nonvolatile_counts(ctypes.byref(counts))
         return {name: int(getattr(counts, name)) for name, *_ in counts._fields_}

@@ -16,6 +16,7 @@ import select
 import signal
 import sys
 import time
+from functools import partial
 from pathlib import Path
 from types import FrameType
 
@@ -122,6 +123,7 @@ class Session:
     """One run of the command."""
 
     def __init__(self, arguments: argparse.Namespace) -> None:
+        """Switch the lathe on and make the terminal."""
         self.arguments = arguments
         self.lathe = VirtualLathe(
             options_from(arguments), load_memory(arguments.eeprom_file)
@@ -137,7 +139,7 @@ class Session:
 
     def _schedule(self) -> None:
         for name, seconds in self.arguments.press:
-            self.lathe.at(seconds, lambda name=name: self.act(name))
+            self.lathe.at(seconds, partial(self.act, name))
         for seconds in self.arguments.unplug:
             self.lathe.at(seconds, lambda: self.act("unplug"))
         for seconds in self.arguments.plug:

@@ -13,7 +13,8 @@ from typing import Any
 from .chip import CYCLES_PER_SECOND, Chip, Drive, InterruptCost, NonVolatile, Stop
 from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine
 from .part import WantedPart, read_part
-from .usb_host import SerialPort, UsbHost
+from .serial_port import SerialPort
+from .usb_host import UsbHost
 from .workpiece import Stock, Workpiece
 
 BUTTONS = {"run": "RD4", "hold": "RD5", "stop": "RD6"}
@@ -70,6 +71,7 @@ class VirtualLathe:
     """A lathe with firmware in it, just switched on; time stands still until it is told to run."""
 
     def __init__(self, options: Options | None = None, memory: NonVolatile | None = None) -> None:
+        """Build the lathe; ``memory`` is what an earlier one has kept."""
         self.options = options if options is not None else Options()
         self.chip = Chip(self.options.firmware)
         if memory is not None:
@@ -177,7 +179,8 @@ class VirtualLathe:
     def _collect(self) -> None:
         moves = self.machine.take_moves()
         self.workpiece.cut(moves)
-        for name, values in ((AxisName.X, [m.x for m in moves]), (AxisName.Z, [m.z for m in moves])):
+        places = {AxisName.X: [m.x for m in moves], AxisName.Z: [m.z for m in moves]}
+        for name, values in places.items():
             if values:
                 low, high = self._furthest.get(name, (values[0] / 2, values[0] / 2))
                 self._furthest[name] = min(low, min(values) / 2), max(high, max(values) / 2)
@@ -186,8 +189,10 @@ class VirtualLathe:
     # -- hands ------------------------------------------------------------------------------------
 
     def press(self, button: str) -> None:
-        """Press ``run``, ``hold`` or ``stop`` for 0.1 s, push ``estop`` (it stays in until
-        ``release``), pull or put in the cable with ``unplug`` and ``plug``.
+        """Do what a hand can do.
+
+        ``run``, ``hold`` and ``stop`` are pressed for 0.1 s, ``estop`` stays in until
+        ``release``; ``unplug`` and ``plug`` move the cable.
 
         Raises:
             ValueError: no such button.
@@ -257,6 +262,25 @@ class VirtualLathe:
         """Return the expectations that did not hold."""
         return [check for check in self.checks() if check.broken]
 
+    def _setup_report(self) -> dict[str, int]:
+        """What a reader of the trace must know besides the trace."""
+        x, z = self.machine.options(AxisName.X), self.machine.options(AxisName.Z)
+        return {
+            "dead_steps_x": x.backlash,
+            "dead_steps_z": z.backlash,
+            "slack_x": x.slack,
+            "slack_z": z.slack,
+            "start_x": x.start,
+            "start_z": z.start,
+            "part_zero_x": self.workpiece.zero_x,
+            "part_zero_z": self.workpiece.zero_z,
+            "stock_radius_steps": self.workpiece.stock.radius,
+            "stock_length_steps": self.workpiece.stock.length,
+            "stock_allowance_steps": self.workpiece.stock.allowance,
+            "step_x_nm": STEP_NM,
+            "step_z_nm": STEP_NM,
+        }
+
     def report(self) -> dict[str, Any]:
         """Return the report as the contract wants it, for JSON."""
         self._collect()
@@ -287,8 +311,7 @@ class VirtualLathe:
             "profile": work.profile(STEP_NM, STEP_NM),
             "dimensions": work.dimensions(wanted, STEP_NM, STEP_NM) if wanted else [],
             "steps_cutting": work.steps_cutting,
-            "dead_steps_x": self.options.backlash_x,
-            "dead_steps_z": self.options.backlash_z,
+            "setup": self._setup_report(),
             "slide_x": self.machine.axis(AxisName.X).slide,
             "slide_z": self.machine.axis(AxisName.Z).slide,
             "usb_errors": self.host.mistakes,

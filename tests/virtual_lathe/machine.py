@@ -90,6 +90,7 @@ class Machine:
     """The mechanics behind the coil pins of the chip of this process."""
 
     def __init__(self, x: AxisOptions, z: AxisOptions) -> None:
+        """Connect motors and switches to the pins of the chip."""
         self._native = library()
         self._options = {AxisName.X: x, AxisName.Z: z}
         self._native.vl_machine_attach()
@@ -144,8 +145,11 @@ class Machine:
         self._native.vl_motor_power(int(on))
 
     def set_switch_quality(self, bounce_us: int = 0, noise_hz: int = 0, seed: int = 1) -> None:
-        """Let the switch contacts bounce for ``bounce_us`` after each change and put
-        ``noise_hz`` pulses of 1 to 10 us per second on their lines."""
+        """Make the switches worse.
+
+        Contacts bounce for ``bounce_us`` after each change; ``noise_hz`` pulses of 1 to 10 us per
+        second come on their lines.
+        """
         self._native.vl_switch_quality(bounce_us, noise_hz, seed)
 
     def take_moves(self) -> list[Move]:

@@ -196,7 +196,7 @@ def library() -> ctypes.CDLL:
     """
     path = Path(os.environ.get(LIBRARY_VARIABLE, str(DEFAULT_LIBRARY)))
     if not path.exists():
-        raise FileNotFoundError(f"{path} does not exist: build it with `make virtual-lathe-library`")
+        raise FileNotFoundError(f"{path} is missing: build it with `make virtual-lathe-library`")
     loaded = ctypes.CDLL(str(path))
     for name, (result, arguments) in _SIGNATURES.items():
         function = getattr(loaded, name)

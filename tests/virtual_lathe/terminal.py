@@ -24,6 +24,7 @@ class Terminal:
     """
 
     def __init__(self, host: UsbHost, link: Path | None = None) -> None:
+        """Open the terminal and make the link."""
         self._host = host
         self._link = link
         self._master, self._slave = os.openpty()

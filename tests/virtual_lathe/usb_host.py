@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The computer at the other end of the cable: single transactions, control transfers, the
-enumeration as Linux does it, and the serial port of the CDC-ACM device."""
+"""The computer at the other end of the cable.
+
+Single transactions, control transfers, the enumeration as Linux does it, and the serial port of
+the CDC-ACM device.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,8 @@ from .native_library import UsbCountsC, library
 PACKET_BYTES = 64
 SETUP_TRIES = 3
 NAK_PAUSE_S = 60e-6
+# Between the end of one control transfer and the next a computer runs its driver.
+DRIVER_PAUSE_S = 100e-6
 CONTROL_TIMEOUT_S = 5.0
 DEBOUNCE_S = 0.1
 RESET_S = 0.01
@@ -89,6 +94,7 @@ class UsbHost:
     """
 
     def __init__(self, chip: Chip, run_to: Callable[[int], object] | None = None) -> None:
+        """Put engine and host behind the chip, with the cable out."""
         self.chip = chip
         self.description = Description()
         self.address = 0
@@ -201,6 +207,7 @@ class UsbHost:
         reading = bool(request_type & 0x80)
         count = length if reading else len(data)
         packet = struct.pack("<BBHHH", request_type, request, value, index, count)
+        self.wait(DRIVER_PAUSE_S)
         self._persist(Token.SETUP, 0, 0, packet, what)
         if reading and count:
             received = self._control_in(count, what)
@@ -363,72 +370,3 @@ class UsbHost:
         counts = UsbCountsC()
         self._native.vl_usb_counts(ctypes.byref(counts))
         return {name: int(getattr(counts, name)) for name, *_ in counts._fields_}
-
-
-class SerialPort:
-    """The CDC port in this process; reading and writing lets simulated time pass.
-
-    The methods are those of ``serial.Serial`` that a program with its own framing needs, so that
-    code written for pyserial works on it. Times are simulated seconds.
-    """
-
-    def __init__(self, host: UsbHost, timeout: float | None = 1.0) -> None:
-        self._host = host
-        self.timeout = timeout
-        self._received = bytearray()
-
-    def _check(self) -> None:
-        if not self._host.port_open or not self._host.connected:
-            raise UsbError("the device is gone")
-
-    def write(self, data: bytes) -> int:
-        """Send all of ``data``; waits as long as the device says NAK.
-
-        Raises:
-            UsbError: the cable is out.
-            UsbTimeout: the device has not taken the bytes in 5 seconds.
-        """
-        rest = bytes(data)
-        deadline = self._host.chip.cycle + round(CONTROL_TIMEOUT_S * CYCLES_PER_SECOND)
-        while rest or self._host.unsent:
-            self._check()
-            rest = rest[self._host.send(rest) :]
-            if self._host.chip.cycle > deadline:
-                raise UsbTimeout("the device does not take what is sent")
-            self._host.wait(2e-4)
-        return len(data)
-
-    def read(self, size: int = 1) -> bytes:
-        """Return up to ``size`` bytes, fewer when ``timeout`` has passed."""
-        start = self._host.chip.cycle
-        while len(self._received) < size:
-            self._received += self._host.receive()
-            waited = (self._host.chip.cycle - start) / CYCLES_PER_SECOND
-            if len(self._received) >= size or (
-                self.timeout is not None and waited >= self.timeout
-            ):
-                break
-            self._check()
-            self._host.wait(2e-4)
-        taken = bytes(self._received[:size])
-        del self._received[:size]
-        return taken
-
-    @property
-    def in_waiting(self) -> int:
-        """Bytes that can be read at once."""
-        self._received += self._host.receive()
-        return len(self._received)
-
-    def flush(self) -> None:
-        """Nothing is left to send after :meth:`write`."""
-
-    def reset_input_buffer(self) -> None:
-        """Forget what has been received."""
-        self._received.clear()
-        self._host.receive()
-
-    def close(self) -> None:
-        """Close the port if the device is still there."""
-        if self._host.port_open and self._host.connected:
-            self._host.close_port()

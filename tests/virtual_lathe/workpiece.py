@@ -137,8 +137,10 @@ class Workpiece:
     # -- measuring --------------------------------------------------------------------------------
 
     def profile(self, step_x_nm: int, step_z_nm: int) -> list[list[float]]:
-        """Return ``[z_mm, diameter_mm]`` from the chuck to the free end, without points that
-        lie on a straight line between their neighbours."""
+        """Return ``[z_mm, diameter_mm]`` from the chuck to the free end.
+
+        Points between two neighbours of the same diameter are left out.
+        """
         points: list[list[float]] = []
         for i, radius in enumerate(self.radii):
             inner = 0 < i < len(self.radii) - 1

@@ -95,6 +95,7 @@ bool Chip::load(const char *path)
     flags_.assign(FLASH_BYTES / 2, 0);
     cpu->setBreakOnReset(false);
     nonvolatile().attach();
+    repair_compare();
     classify();
     start_watchdog();
     note_reset(POR_RESET);

@@ -96,6 +96,7 @@ private:
     void stand_still();
     void note_instruction(uint8_t flag);
     void finish_reset();
+    void repair_compare();
     void start_watchdog();
     void feed_watchdog();
     void watch();

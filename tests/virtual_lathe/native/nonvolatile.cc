@@ -85,6 +85,11 @@ void Nonvolatile::attach()
     std::fill_n(latches_, WRITE_BYTES, 0xFF);
     for (unsigned i = 0; i < EEPROM_BYTES; i++)
         eeprom[i] = cpu->get_eeprom()->get_rom()[i]->get_value();
+    // gpsim starts with zeros where the program says nothing; a chip fresh from
+    // the programmer is erased.
+    if (std::all_of(eeprom, eeprom + EEPROM_BYTES,
+                    [](uint8_t byte) { return byte == 0; }))
+        std::fill_n(eeprom, EEPROM_BYTES, 0xFF);
     for (unsigned word = 0; word < FLASH_BYTES / 2; word++) {
         // Never programmed; tables hold words that are no instruction either.
         if (cpu->program_memory[word] == &cpu->bad_instruction)

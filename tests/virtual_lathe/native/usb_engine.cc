@@ -3,35 +3,13 @@
 // DS39632E.
 
 #include "usb_engine.hh"
-
-#include <cstdarg>
-#include <cstdio>
+#include "usb_registers.hh"
 
 namespace lathe {
 
 namespace {
 
-enum Ucon : uint8_t {
-    SUSPND = 0x02, RESUME = 0x04, USBEN = 0x08, PKTDIS = 0x10, SE0 = 0x20,
-    PPBRST = 0x40
-};
-enum Uir : uint8_t {
-    URSTIF = 0x01, UERRIF = 0x02, ACTVIF = 0x04, TRNIF = 0x08, IDLEIF = 0x10,
-    STALLIF = 0x20, SOFIF = 0x40
-};
-enum Ucfg : uint8_t { PPB = 0x03, FSEN = 0x04, UTRDIS = 0x08, UPUEN = 0x10 };
-enum Uep : uint8_t {
-    EPSTALL = 0x01, EPINEN = 0x02, EPOUTEN = 0x04, EPCONDIS = 0x08,
-    EPHSHK = 0x10
-};
-enum Bdstat : uint8_t {
-    BSTALL = 0x04, DTSEN = 0x08, DTS = 0x40, UOWN = 0x80
-};
-constexpr unsigned RAM_FIRST = 0x400, RAM_LAST = 0x7FF;
-constexpr unsigned DESCRIPTOR_BYTES = 4, ENDPOINTS = 16;
-constexpr unsigned PACKET_MAX = 64;
 constexpr uint8_t USBIF = 0x20;
-constexpr size_t STATUS_FIFO_DEPTH = 4;
 // Section 17.2.3: TRNIF comes back at most 6 cycles after it was cleared.
 constexpr uint64_t TRNIF_AGAIN_CYCLES = 6;
 constexpr size_t MISTAKES_MAX = 200;
@@ -67,29 +45,6 @@ public:
     void put_value(unsigned v) override { value.put(v & 0xFF); }
     REGISTER_TYPES isa() override { return FILE_REGISTER; }
 };
-
-unsigned ram(unsigned address)
-{
-    return chip().cpu->registers[address]->value.get();
-}
-
-void set_ram(unsigned address, unsigned value)
-{
-    chip().cpu->registers[address]->value.put(value & 0xFF);
-}
-
-std::string text(const char *format, ...)
-    __attribute__((format(printf, 1, 2)));
-
-std::string text(const char *format, ...)
-{
-    char buffer[160];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(buffer, sizeof buffer, format, arguments);
-    va_end(arguments);
-    return buffer;
-}
 
 } // namespace
 
@@ -346,114 +301,6 @@ void UsbEngine::write_back(const Descriptor &d, Token token, unsigned count)
 {
     set_ram(d.at + 1, count & 0xFF);
     set_ram(d.at, (d.stat & DTS) | unsigned(token) << 2 | (count >> 8 & 3));
-}
-
-// ---- the bus -----------------------------------------------------------------
-
-Handshake UsbEngine::begin(Packet &packet)
-{
-    unsigned n = packet.endpoint;
-    if (!connected() || packet.address != reg(UADDR) || reg(UCON) & SUSPND)
-        return Handshake::None;
-    uint8_t control = reg(UEP0 + n);
-    bool in = packet.token == Token::In;
-    if (!(control & (in ? EPINEN : EPOUTEN)))
-        return Handshake::None;
-    if (packet.token == Token::Setup) {
-        bool ready = !(control & EPCONDIS) && fifo_.size() < STATUS_FIFO_DEPTH
-                     && descriptor(n, false).stat & UOWN;
-        return ready ? Handshake::Ack : Handshake::None;
-    }
-    Descriptor d = descriptor(n, in);
-    if (reg(UCON) & PKTDIS || fifo_.size() >= STATUS_FIFO_DEPTH ||
-        !(d.stat & UOWN))
-        return Handshake::Nak;
-    if (d.stat & BSTALL) {
-        reg(UEP0 + n) |= EPSTALL;
-        raise(STALLIF);
-        return Handshake::Stall;
-    }
-    if (in) {
-        packet.toggle = d.stat & DTS ? 1 : 0;
-        packet.data.clear();
-        if (buffer_fits(d, d.count)) {
-            for (unsigned i = 0; i < d.count; i++)
-                packet.data.push_back(ram(d.address + i));
-        }
-    }
-    return Handshake::Ack;
-}
-
-void UsbEngine::complete(const Packet &packet)
-{
-    bool in = packet.token == Token::In;
-    unsigned n = packet.endpoint;
-    Descriptor d = descriptor(n, in);
-    if (!(d.stat & UOWN) || reg(UCON) & SE0)
-        return;
-    unsigned count = packet.data.size();
-    if (!in) {
-        // Table 17-3: a packet with the wrong toggle is acknowledged and lost.
-        bool wrong = d.stat & DTSEN && packet.toggle != (d.stat & DTS ? 1u : 0u);
-        if (wrong && packet.token == Token::Out)
-            return;
-        if (count > d.count) {
-            mistake(text("descriptor 0x%03x: packet of %u bytes for a buffer "
-                         "of %u", d.at, count, d.count));
-            count = d.count;
-        }
-        if (buffer_fits(d, count)) {
-            for (unsigned i = 0; i < count; i++)
-                set_ram(d.address + i, packet.data[i]);
-        }
-    }
-    if (packet.token == Token::Setup) {
-        reg(UCON) |= PKTDIS;
-        set_address_open_ = count >= 2 && packet.data[0] == 0 &&
-                            packet.data[1] == 5;
-    } else if (in && n == 0) {
-        set_address_open_ = false;
-    }
-    write_back(d, packet.token, count);
-    push_status(n << 3 | (in ? 4 : 0));
-}
-
-void UsbEngine::start_of_frame(unsigned number)
-{
-    bus_activity();
-    reg(UFRML) = number & 0xFF;
-    reg(UFRMH) = number >> 8 & 7;
-    if (connected() && !(reg(UCON) & SUSPND))
-        raise(SOFIF);
-}
-
-void UsbEngine::bus_reset(bool active)
-{
-    if (!(reg(UCON) & USBEN))
-        return;
-    bus_activity();
-    if (!active) {
-        reg(UCON) &= ~SE0;
-        return;
-    }
-    reg(UCON) |= SE0;
-    reg(UCON) &= ~PKTDIS;
-    reg(UADDR) = 0;
-    set_address_open_ = false;
-    reset_seen_ = true;
-    raise(URSTIF);
-}
-
-void UsbEngine::bus_idle()
-{
-    if (connected())
-        raise(IDLEIF);
-}
-
-void UsbEngine::bus_activity()
-{
-    if (connected() && reg(UCON) & SUSPND)
-        raise(ACTVIF);
 }
 
 } // namespace lathe

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine as the bus sees it: answers to tokens, frames, reset, idle.
+
+#include "usb_engine.hh"
+#include "usb_registers.hh"
+
+namespace lathe {
+
+Handshake UsbEngine::begin(Packet &packet)
+{
+    unsigned n = packet.endpoint;
+    if (!connected() || packet.address != reg(UADDR) || reg(UCON) & SUSPND)
+        return Handshake::None;
+    uint8_t control = reg(UEP0 + n);
+    bool in = packet.token == Token::In;
+    if (!(control & (in ? EPINEN : EPOUTEN)))
+        return Handshake::None;
+    if (packet.token == Token::Setup) {
+        bool ready = !(control & EPCONDIS) && fifo_.size() < STATUS_FIFO_DEPTH
+                     && descriptor(n, false).stat & UOWN;
+        return ready ? Handshake::Ack : Handshake::None;
+    }
+    Descriptor d = descriptor(n, in);
+    if (reg(UCON) & PKTDIS || fifo_.size() >= STATUS_FIFO_DEPTH ||
+        !(d.stat & UOWN))
+        return Handshake::Nak;
+    if (d.stat & BSTALL) {
+        reg(UEP0 + n) |= EPSTALL;
+        raise(STALLIF);
+        return Handshake::Stall;
+    }
+    if (in) {
+        packet.toggle = d.stat & DTS ? 1 : 0;
+        packet.data.clear();
+        if (buffer_fits(d, d.count)) {
+            for (unsigned i = 0; i < d.count; i++)
+                packet.data.push_back(ram(d.address + i));
+        }
+    }
+    return Handshake::Ack;
+}
+
+void UsbEngine::complete(const Packet &packet)
+{
+    bool in = packet.token == Token::In;
+    unsigned n = packet.endpoint;
+    Descriptor d = descriptor(n, in);
+    if (!(d.stat & UOWN) || reg(UCON) & SE0)
+        return;
+    unsigned count = packet.data.size();
+    if (!in) {
+        // Table 17-3: a packet with the wrong toggle is acknowledged and lost.
+        bool wrong = d.stat & DTSEN && packet.toggle != (d.stat & DTS ? 1u : 0u);
+        if (wrong && packet.token == Token::Out)
+            return;
+        if (count > d.count) {
+            mistake(text("descriptor 0x%03x: packet of %u bytes for a buffer "
+                         "of %u", d.at, count, d.count));
+            count = d.count;
+        }
+        if (buffer_fits(d, count)) {
+            for (unsigned i = 0; i < count; i++)
+                set_ram(d.address + i, packet.data[i]);
+        }
+    }
+    if (packet.token == Token::Setup) {
+        reg(UCON) |= PKTDIS;
+        set_address_open_ = count >= 2 && packet.data[0] == 0 &&
+                            packet.data[1] == 5;
+    } else if (in && n == 0) {
+        set_address_open_ = false;
+    }
+    write_back(d, packet.token, count);
+    push_status(n << 3 | (in ? 4 : 0));
+}
+
+void UsbEngine::start_of_frame(unsigned number)
+{
+    bus_activity();
+    reg(UFRML) = number & 0xFF;
+    reg(UFRMH) = number >> 8 & 7;
+    if (connected() && !(reg(UCON) & SUSPND))
+        raise(SOFIF);
+}
+
+void UsbEngine::bus_reset(bool active)
+{
+    if (!(reg(UCON) & USBEN))
+        return;
+    bus_activity();
+    if (!active) {
+        reg(UCON) &= ~SE0;
+        return;
+    }
+    reg(UCON) |= SE0;
+    reg(UCON) &= ~PKTDIS;
+    reg(UADDR) = 0;
+    set_address_open_ = false;
+    reset_seen_ = true;
+    raise(URSTIF);
+}
+
+void UsbEngine::bus_idle()
+{
+    if (connected())
+        raise(IDLEIF);
+}
+
+void UsbEngine::bus_activity()
+{
+    if (connected() && reg(UCON) & SUSPND)
+        raise(ACTVIF);
+}
+
+} // namespace lathe

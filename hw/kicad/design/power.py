@@ -36,7 +36,7 @@ def _input(sheet: Sheet) -> None:
     sheet.wire((40, 30), "R9.1")
     sheet.wire("R9.2", "Q4.1")
     sheet.label("REV_GATE", (40, 56), 180)
-    zener(sheet, "D3", "12V", (50, 56), "up", fp.DIODE_1A)
+    zener(sheet, "D3", "9V1", (50, 56), "up", fp.DIODE_1A)
     sheet.wire((40, 50), (50, 50), "D3.1")
     sheet.wire("D3.2", (50, 64))
     zener(sheet, "D4", "P6KE18A", (60, 46), "up", fp.DIODE_TVS_600W)

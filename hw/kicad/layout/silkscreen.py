@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: CERN-OHL-P-2.0
 """Words on the board: names, connector pinouts, revision, licence.
 
-A part's reference goes to the first place near it where it lies on nothing
+Connectors are named with their use; any other part's reference goes to the first place near it where it lies on nothing
 else; words with a fixed place come first.
 """
 
@@ -23,15 +23,15 @@ WORDS: list[tuple[str, float, float, float, float]] = [
     ("CERN-OHL-P-2.0", 12.0, 25.0, 1.0, 0),
     ("LOGIC", 78.0, 27.5, 1.4, 0), ("MACHINE", 103.0, 31.2, 1.4, 0),
     ("isolation gap", 91.8, 59.0, 1.0, 0), ("keep clear", 91.8, 61.0, 1.0, 0),
-    ("SUPPLY 5-12V", 188.0, 14.0, 0.9, 90),
+    ("J2 SUPPLY 5-12V", 188.0, 14.6, 0.8, 90),
     ("+", 174.3, 16.5, 1.4, 0), ("-", 174.3, 11.4, 1.4, 0),
-    ("E-STOP", 188.0, 25.3, 1.0, 90),
-    ("MOTOR Z", 188.0, 46.8, 1.2, 90), ("MOTOR X", 188.0, 80.8, 1.2, 90),
-    ("USB", 72.0, 132.0, 1.0, 0),
-    ("CONTACT", 106.5, 132.4, 0.9, 0), ("INDEX", 121.0, 132.4, 0.9, 0),
-    ("LIMIT SWITCHES", 141.0, 132.4, 0.9, 0), ("OUTPUTS", 163.6, 132.4, 0.9, 0),
-    ("LCD", 55.0, 5.0, 1.2, 0), ("ICSP", 65.5, 40.0, 1.0, 0),
-    ("STEP/DIR", 7.8, 43.6, 1.0, 0), ("PANEL", 7.8, 80.9, 1.0, 0), ("SPARE", 9.6, 67.4, 0.9, 0),
+    ("J3 E-STOP", 188.0, 25.3, 1.0, 90),
+    ("J5 MOTOR Z", 188.0, 46.8, 1.2, 90), ("J6 MOTOR X", 188.0, 80.8, 1.2, 90),
+    ("J1 USB", 72.0, 132.0, 1.0, 0),
+    ("J8 CONTACT", 106.5, 132.4, 0.9, 0), ("J9 INDEX", 121.0, 132.4, 0.9, 0),
+    ("J7 LIMIT SWITCHES", 141.0, 132.4, 0.9, 0), ("J10 OUTPUTS", 163.6, 132.4, 0.9, 0),
+    ("J12 LCD", 56.5, 5.0, 1.2, 0), ("J13 ICSP", 67.2, 39.6, 0.9, 0),
+    ("J14 STEP/DIR", 7.8, 43.6, 1.0, 0), ("J11 PANEL", 7.8, 80.9, 1.0, 0), ("J15 SPARE", 8.6, 67.4, 0.9, 0),
     ("RUN", 17.2, 127.5, 1.0, 0), ("HOLD", 29.2, 127.5, 1.0, 0), ("STOP", 41.2, 127.5, 1.0, 0),
     ("RESET", 42.0, 36.0, 0.9, 0), ("T5A", 160.2, 7.2, 1.2, 0), ("CONTRAST", 24.5, 16.0, 0.9, 0),
     ("STATUS", 7.3, 32.6, 0.9, 0), ("MOTOR ON", 152.0, 23.6, 0.8, 0),
@@ -163,6 +163,9 @@ def write(pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> None:
             spot = footprint.FindPadByNumber(str(number)).GetPosition()
             if name:
                 fixed.append((name, spot + pcbnew.VECTOR2I_MM(dx, dy), size, angle))
+        footprint.Reference().SetVisible(False)
+    for ref in ("J1", "J2", "J3", "J11", "J14"):
+        board.FindFootprintByReference(ref).Reference().SetVisible(False)
     for words, position, size, angle in fixed:
         try:
             layer.word(words, position, size, angle)

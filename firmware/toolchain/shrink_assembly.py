@@ -22,6 +22,7 @@ from pathlib import Path
 from shrink_arguments import check_stack, static_arguments
 from shrink_banks import drop_bank_selections
 from shrink_flow import Liveness
+from shrink_jumps import return_literals, return_values, shorten_ways, tail_calls
 from shrink_layout import check_reach, order, shorten
 from shrink_model import Program, RefusalError, read_program, write_program
 from shrink_registers import (
@@ -34,12 +35,8 @@ from shrink_registers import (
     reachable,
     refuse_recursion,
 )
-from shrink_simplify import (
-    drop_repeated_loads,
-    drop_unneeded,
-    jumps_to_return,
-    tail_calls,
-)
+from shrink_results import results_in_registers
+from shrink_simplify import add_into_pointer, drop_repeated_loads, drop_unneeded, store_less_tests
 
 MAIN = "_main"
 INTERRUPT = "_low_interrupt"
@@ -103,7 +100,7 @@ class Shrinker:
 
     def live(self) -> Liveness:
         """Return what is needed where, as the program stands."""
-        return Liveness(self.program, self.roots, self.takes_w)
+        return Liveness(self.program, self.roots - {MAIN}, self.takes_w)
 
     def run(self) -> None:
         """Take all steps; raise RefusalError when one is not safe."""
@@ -114,16 +111,20 @@ class Shrinker:
         before = self.size()
         drop_saves(self.program, self.kept)
         self._count("saves", before)
+        results_in_registers(self.program, self.live(), self.roots | self.kept)
         self._simplify()
         self._place_registers()
         check_stack(self.program)
-        jumps_to_return(self.program)
+        before = self.size()
+        shorten_ways(self.program)
+        self._count("jumps", before)
         before = self.size()
         drop_bank_selections(self.program, self.assembly, self.roots)
         self._count("bank selections", before)
         before = self.size()
         tail_calls(self.program)
-        self._count("tail calls", before)
+        return_literals(self.program)
+        self._count("returns", before)
         self.order = order(self.program)
         self.steps["short calls"] += shorten(self.program, self.order)
         check_reach(self.program, self.order)
@@ -132,11 +133,14 @@ class Shrinker:
         self.steps[step] += before - self.size()
 
     def _simplify(self) -> None:
+        return_values(self.program)
         before = -1
         while before != self.size():
             before = self.size()
             self.steps["unneeded"] += drop_unneeded(self.program, self.live())
             self.steps["repeated"] += drop_repeated_loads(self.program, self.live())
+            self.steps["tests"] += store_less_tests(self.program, self.live())
+            self.steps["pointers"] += add_into_pointer(self.program, self.live())
 
     def text(self) -> str:
         """Return the program as one assembly file."""
@@ -162,7 +166,11 @@ class Shrinker:
         if used > self.limit:
             raise TooManyError(f"{used} register bytes needed, {self.limit} allowed")
         assign(self.program, names)
-        self.steps["copies"] += drop_repeated_loads(self.program, self.live())
+        before = -1
+        while before != self.size():
+            before = self.size()
+            self.steps["copies"] += drop_repeated_loads(self.program, self.live())
+            self.steps["copies"] += drop_unneeded(self.program, self.live(), places=True)
 
 
 def heaviest(program: Program, kept: set[str]) -> str:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What each instruction reads and writes, where it goes, and what is still needed.
 
-Tracked are the virtual registers, WREG ("W") and the five flags. All else is
-memory: never removed, never moved.
+Tracked are the virtual registers, WREG ("W"), the five flags, and the core
+registers that return results (PRODL, PRODH, FSR0L). All else is memory: never removed, never moved.
 """
 
 from dataclasses import dataclass
@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from shrink_model import SKIPS, Function, Line, Program, RefusalError
 
 FLAGS = {"C", "DC", "Z", "OV", "N"}
+RESULT = ("PRODL", "PRODH", "FSR0L")  # where the higher bytes of a result are returned
+THROUGH_FSR0 = {"INDF0", "POSTINC0", "POSTDEC0", "PREINC0", "PLUSW0"}
 FLAG_OF_BIT = {"0": "C", "1": "DC", "2": "Z", "3": "OV", "4": "N"}
 SUM = FLAGS
 LOGIC = {"Z", "N"}
@@ -93,7 +95,7 @@ class Effect:
 
 def _named(operand: str) -> set[str]:
     """Return the tracked things that a file-register operand stands for."""
-    if "@" in operand:
+    if "@" in operand or operand in RESULT:
         return {operand}
     if operand == "WREG":
         return {"W"}
@@ -103,14 +105,13 @@ def _named(operand: str) -> set[str]:
 def _reading(operand: str) -> set[str]:
     if operand == "STATUS":
         return set(FLAGS)
-    if operand.startswith("PLUSW"):
-        return {"W"}
-    return _named(operand)
+    return _named(operand) | _through(operand)
 
 
 def _through(operand: str) -> set[str]:
-    """Return what writing an operand reads (the index of PLUSWn)."""
-    return {"W"} if operand.startswith("PLUSW") else set()
+    """Return what reaching an operand reads (the index of PLUSWn, the pointer)."""
+    found = {"W"} if operand.startswith("PLUSW") else set()
+    return found | ({"FSR0L"} if operand in THROUGH_FSR0 else set())
 
 
 def _fixed_effects() -> dict[str, Effect]:
@@ -120,7 +121,7 @@ def _fixed_effects() -> dict[str, Effect]:
     fixed |= {op: Effect({"W"}, {"W"} | flags, True) for op, flags in LITERAL.items()}
     fixed["MOVLW"] = Effect(set(), {"W"}, True)
     fixed["RETLW"] = Effect(set(), {"W"}, False)
-    fixed["MULLW"] = Effect({"W"}, set(), False)
+    fixed["MULLW"] = Effect({"W"}, {"PRODL", "PRODH"}, False)
     fixed["DAW"] = Effect({"W", "C", "DC"}, {"W", "C"}, True)
     return fixed
 
@@ -141,14 +142,15 @@ def effect(line: Line) -> Effect:
         reads, flags = STORE[op]
         return Effect(reads | _through(args[0]), _named(args[0]) | flags, bool(_named(args[0])))
     if op in TEST:
-        return Effect(TEST[op] | _reading(args[0]), set(), False)
+        written = {"PRODL", "PRODH"} if op == "MULWF" else set()
+        return Effect(TEST[op] | _reading(args[0]), written, False)
     return _file_effect(line)
 
 
 def _file_effect(line: Line) -> Effect:
     """Return the effect of an instruction with a destination bit or a bit number."""
     op, args = line.op, line.args
-    source = _reading(args[0])
+    source = _reading(args[0])  # includes what a write through FSR0 reads
     if (op in BINARY or op in UNARY) and len(args) > 1:
         reads, flags = BINARY[op] if op in BINARY else UNARY[op]
         to_w = args[1].upper() in ("W", "0")
@@ -224,15 +226,20 @@ def _target(function: Function, where: dict[str, int], line: Line) -> int:
     return target
 
 
+def result_name(function: str, part: str) -> str:
+    """Return the register that stands for PRODL, PRODH or FSR0L in a function's result."""
+    return f"{function}@ret{part}"
+
+
 class Liveness:
     """Which tracked things are needed after each line, over the whole program.
 
     A call of a function of the program needs what that function needs on entry
     (WREG and static arguments: SDCC never passes flags into a function, and what
     else is read before it is written is garbage by design); a return needs what
-    any caller needs afterwards. `roots` are entered from
-    elsewhere and return to code that is not seen. A call of any other function
-    needs WREG only if `takes_w` says so.
+    any caller needs afterwards. `roots` are entered from elsewhere and return to
+    code that is not seen (main never returns, so is none). A call of any other
+    function needs WREG, PROD and FSR0L only if `takes_w` says so.
     """
 
     def __init__(self, program: Program, roots: set[str], takes_w: set[str]) -> None:
@@ -241,9 +248,13 @@ class Liveness:
         self.takes_w = takes_w
         self.number: dict[str, int] = {}
         self.names: list[str] = []
-        self.common = self.mask({"W"} | FLAGS)
+        self.common = self.mask({"W", *RESULT} | FLAGS)
+        self.results = {
+            name: self.mask({result_name(name, part) for part in RESULT})
+            for name in program.functions
+        }
         self.entry = dict.fromkeys(program.functions, 0)
-        result = self.mask({"W"})
+        result = self.mask({"W", *RESULT})
         self.exit = {name: result if name in roots else 0 for name in program.functions}
         for name, function in program.functions.items():
             if any(line.op == "RETFIE" for line in function.body):
@@ -326,7 +337,7 @@ class Liveness:
         """Tell the callee what is needed after this call of it."""
         if target not in self.exit:
             return False
-        wanted = self.exit[target] | (live & self.common)
+        wanted = self.exit[target] | (live & (self.common | self.results[target]))
         if wanted == self.exit[target]:
             return False
         self.exit[target] = wanted
@@ -334,6 +345,10 @@ class Liveness:
 
     def _before_call(self, target: str, live: int) -> int:
         if target in self.entry:
-            return (live & ~self.common) | self.entry[target]
+            return (live & ~self.common & ~self.results[target]) | self.entry[target]
         needs = live & ~self.common
-        return needs | (self.mask({"W"}) if target in self.takes_w else 0)
+        return needs | (self.mask({"W", *RESULT}) if target in self.takes_w else 0)
+
+    def returns(self, function: str, thing: str) -> bool:
+        """Tell whether any caller needs a thing after the function has returned."""
+        return bool(self.exit[function] & self.mask({thing}))

@@ -30,9 +30,20 @@ SKIPS = {
 # The names by which C code would reach what is tracked under other names.
 UNTRACKED = {
     f"_{name}{suffix}"
-    for name in ("FSR1", "FSR2", "POSTDEC1", "POSTINC1", "PREINC1", "PLUSW1", "INDF1")
+    for name in (
+        "FSR0",
+        "FSR1",
+        "FSR2",
+        "PROD",
+        "POSTDEC1",
+        "POSTINC1",
+        "PREINC1",
+        "PLUSW1",
+        "INDF1",
+    )
     for suffix in ("", "L", "H")
 } | {"_POSTDEC2", "_POSTINC2", "_PREINC2", "_PLUSW2", "_INDF2"}
+UNTRACKED |= {"_INDF0", "_POSTINC0", "_POSTDEC0", "_PREINC0"}
 UNTRACKED |= {"_STATUS", "_WREG", "_PLUSW0", "_PCL", "_PC"}
 
 

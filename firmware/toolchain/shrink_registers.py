@@ -171,7 +171,8 @@ class Interference:
     def _line(self, name: str, index: int, line: Line) -> None:
         after = self.live.after[name][index] & self.wanted
         if line.op in ("CALL", "RCALL") and line.args[0] in self.changed:
-            for register in self.live.things(after):
+            across = after & ~self.live.results[line.args[0]]
+            for register in self.live.things(across):
                 self._add(register, self.changed[line.args[0]])
         for register in effect(line).writes:
             if "@" in register:

@@ -14,8 +14,12 @@ def after_skip(body: list[Line], index: int) -> bool:
     return body[index].op in SKIPS
 
 
-def drop_unneeded(program: Program, live: Liveness) -> int:
-    """Remove instructions that only write what is not needed; return bytes saved."""
+def drop_unneeded(program: Program, live: Liveness, places: bool = False) -> int:
+    """Remove instructions that only write what is not needed; return bytes saved.
+
+    With `places`, the registers have got their places: functions share them, so
+    only what writes nothing but WREG and flags may go.
+    """
     saved = 0
     for name, function in program.functions.items():
         gone = []
@@ -23,6 +27,7 @@ def drop_unneeded(program: Program, live: Liveness) -> int:
             what = effect(line)
             if what.pure or line.op == "MOVLW" or line.is_("CLRF", "WREG"):
                 needed = any(live.needed(name, index, thing) for thing in what.writes)
+                needed |= places and not what.writes <= FLAGS | {"W"}
                 if not needed and not after_skip(function.body, index):
                     gone.append(index)
         saved += sum(function.body[i].size() for i in gone)
@@ -81,42 +86,63 @@ def _equal_after(line: Line, equal: set[str], skipped: bool) -> set[str]:
     return equal - writes
 
 
-def tail_calls(program: Program) -> int:
-    """Turn each CALL right before RETURN into a jump; return bytes saved."""
+def store_less_tests(program: Program, live: Liveness) -> int:
+    """Use IORLW 0 where a value is stored only to test it; return bytes saved.
+
+    MOVWF r, MOVF r, W with r not needed afterwards: both set Z and N alike.
+    """
     saved = 0
-    for function in program.functions.values():
+    for name, function in program.functions.items():
         body = function.body
         gone = []
         for index in range(len(body) - 1):
-            if (
-                body[index].op == "CALL"
-                and body[index + 1].op == "RETURN"
-                and not (after_skip(body, index))
+            store, load = body[index], body[index + 1]
+            if store.op != "MOVWF" or "@" not in store.args[0] or after_skip(body, index):
+                continue
+            if load.is_("MOVF", store.args[0], "W") and not (
+                live.needed(name, index + 1, store.args[0])
             ):
-                body[index].op = "GOTO"
-                gone.append(index + 1)
-                saved += 2
+                load.op, load.args = "IORLW", ["0x00"]
+                gone.append(index)
+        saved += 2 * len(gone)
         drop_lines(function, gone)
     return saved
 
 
-def jumps_to_return(program: Program) -> None:
-    """Turn each BRA to a RETURN into the RETURN itself (as long, but quicker)."""
-    for function in program.functions.values():
+def add_into_pointer(program: Program, live: Liveness) -> int:
+    """Add an address straight into FSR0 where the sum is needed for nothing else.
+
+    ADDWF a, F; MOVLW h; ADDWFC b, F; MOVFF a, FSR0L; MOVFF b, FSR0H becomes
+    ADDWF a, W; MOVWF FSR0L; MOVLW h; ADDWFC b, W; MOVWF FSR0H. Returns bytes saved.
+    """
+    saved = 0
+    for name, function in program.functions.items():
         body = function.body
-        for line in body:
-            if line.op == "BRA" and line.args[0] in _return_labels(body):
-                line.op, line.args = "RETURN", []
+        for index in range(len(body) - 4):
+            if not _is_pointer_sum(body[index : index + 5]) or after_skip(body, index):
+                continue
+            low, high = body[index].args[0], body[index + 2].args[0]
+            if any(live.needed(name, index + 4, thing) for thing in (low, high, "W")):
+                continue
+            body[index : index + 5] = [
+                Line("ADDWF", [low, "W"]),
+                Line("MOVWF", ["FSR0L"]),
+                body[index + 1],
+                Line("ADDWFC", [high, "W"]),
+                Line("MOVWF", ["FSR0H"]),
+            ]
+            saved += 4
+    return saved
 
 
-def _return_labels(body: list[Line]) -> set[str]:
-    found: set[str] = set()
-    waiting: set[str] = set()
-    for line in body:
-        if not line.op:
-            waiting.add(line.label)
-        else:
-            if line.op == "RETURN":
-                found |= waiting
-            waiting = set()
-    return found
+def _is_pointer_sum(five: list[Line]) -> bool:
+    low, literal, high, to_low, to_high = five
+    return (
+        (low.op, low.args[1:], high.op, high.args[1:]) == ("ADDWF", ["F"], "ADDWFC", ["F"])
+        and literal.op == "MOVLW"
+        and "@" in low.args[0]
+        and "@" in high.args[0]
+        and low.args[0] != high.args[0]
+        and to_low.is_("MOVFF", low.args[0], "FSR0L")
+        and to_high.is_("MOVFF", high.args[0], "FSR0H")
+    )

@@ -13,6 +13,11 @@ TOOL = ROOT / "firmware/toolchain/shrink_assembly.py"
 
 HEAD = """
 STATUS	equ	0xfd8
+WREG	equ	0xfe8
+PRODL	equ	0xff3
+FSR0L	equ	0xfe9
+FSR0H	equ	0xfea
+INDF0	equ	0xfef
 FSR1L	equ	0xfe1
 FSR2L	equ	0xfd9
 POSTINC1	equ	0xfe6
@@ -130,8 +135,8 @@ CALL_ADD = (
 
 def test_arguments_go_to_registers_instead_of_the_stack(tmp_path: Path) -> None:
     out = shrunk(tmp_path, function("_main", CALL_ADD + "; " + CALL_ADD), ADD)
-    text = " ".join(out["_main"] + out["_add"])
-    assert not re.search("POSTDEC1|POSTINC1|PREINC1|FSR2L|PLUSW2", text)
+    stack = "POSTDEC1|POSTINC1|PREINC1|FSR2L|PLUSW2"
+    assert not re.search(stack, " ".join(out["_main"] + out["_add"]))
     first, second = re.findall(r"MOVWF (r0x\w+)", " ".join(out["_main"]))[:2]
     assert f"MOVF {second}, W" in out["_add"]
     assert f"MOVFF {first}, _y" in out["_add"]
@@ -147,6 +152,34 @@ def test_arguments_stay_on_the_stack_when_one_call_has_another_form(tmp_path: Pa
 def test_arguments_of_hand_written_functions_stay_on_the_stack(tmp_path: Path) -> None:
     out = shrunk(tmp_path, function("_main", CALL_ADD), asm=" global _add\n_add:\n")
     assert out["_main"].count("MOVWF POSTDEC1") == 2
+
+
+WORD = function("_word", "MOVFF _x, r0x00; MOVFF r0x00, PRODL; CLRF WREG", "r0x00")
+CALL_WORD = "CALL _word; BANKSEL _x; MOVWF _x, B; MOVFF PRODL, _y"
+
+
+def test_the_high_byte_of_a_result_comes_in_a_register(tmp_path: Path) -> None:
+    out = shrunk(tmp_path, function("_main", CALL_WORD), WORD)
+    assert out["_word"][:2] == ["MOVFF _x, r0x00", "RETLW 0x00"]
+    assert "MOVFF r0x00, _y" in out["_main"]
+
+
+def test_a_result_passed_on_as_it_came_stays_where_it_was(tmp_path: Path) -> None:
+    passes_on = function("_pass", "CALL _word; CLRF _LATB")
+    calls = CALL_WORD.replace("_word", "_pass")
+    out = shrunk(tmp_path, function("_main", calls), passes_on, WORD)
+    assert "MOVFF r0x00, PRODL" in out["_word"]
+    assert "MOVFF PRODL, _y" in out["_main"]
+
+
+def test_a_result_with_two_sources_stays_where_it_was(tmp_path: Path) -> None:
+    either = (
+        "BTFSC _PORTB, 0; BRA _00001_DS_; CALL _word; BRA _00002_DS_; _00001_DS_:; "
+        "CALL _hand; _00002_DS_:; MOVFF PRODL, _y"
+    )
+    out = shrunk(tmp_path, function("_main", either), WORD)
+    assert "MOVFF PRODL, _y" in out["_main"]
+    assert "MOVFF r0x00, PRODL" in out["_word"]
 
 
 INTERRUPT = (
@@ -241,8 +274,7 @@ def test_near_calls_are_short_and_far_ones_long(tmp_path: Path) -> None:
     out = shrunk(
         tmp_path, function("_main", calls), LEAF, function("_far", long), function("_farther", long)
     )
-    assert "RCALL _leaf" in out["_main"]
-    assert "CALL _hand" in out["_main"]
+    assert {"RCALL _leaf", "CALL _hand"} <= set(out["_main"])
     assert sum(line.startswith("CALL _far") for line in out["_main"]) == 1
 
 
@@ -258,6 +290,61 @@ def test_the_entries_of_a_jump_table_keep_their_size(tmp_path: Path) -> None:
     )
     out = shrunk(tmp_path, function("_main", body))
     assert sum(line.startswith("GOTO") for line in out["_main"]) == 2
+
+
+def test_a_stored_value_that_is_only_tested_is_not_stored(tmp_path: Path) -> None:
+    body = "CALL _hand; MOVWF r0x00; MOVF r0x00, W; BZ _00001_DS_; CLRF _LATB; _00001_DS_:"
+    out = shrunk(tmp_path, function("_main", body + "; CLRF _LATC"))
+    assert out["_main"][:2] == ["CALL _hand", "IORLW 0x00"]
+
+
+def test_an_address_is_added_straight_into_the_pointer(tmp_path: Path) -> None:
+    body = (
+        "MOVFF _x, r0x00; CLRF r0x01; MOVLW LOW(_y); ADDWF r0x00, F; MOVLW HIGH(_y); "
+        "ADDWFC r0x01, F; MOVFF r0x00, FSR0L; MOVFF r0x01, FSR0H; CLRF INDF0"
+    )
+    out = shrunk(tmp_path, function("_main", body))
+    assert out["_main"][2:8] == [
+        "MOVLW LOW(_y)",
+        "ADDWF r0x00, W",
+        "MOVWF FSR0L",
+        "MOVLW HIGH(_y)",
+        "ADDWFC r0x01, W",
+        "MOVWF FSR0H",
+    ]
+
+
+def test_a_sum_needed_elsewhere_is_not_only_added_into_the_pointer(tmp_path: Path) -> None:
+    body = (
+        "MOVFF _x, r0x00; CLRF r0x01; MOVLW LOW(_y); ADDWF r0x00, F; MOVLW HIGH(_y); "
+        "ADDWFC r0x01, F; MOVFF r0x00, FSR0L; MOVFF r0x01, FSR0H; CLRF INDF0; MOVFF r0x01, _x"
+    )
+    assert "MOVFF r0x01, FSR0H" in shrunk(tmp_path, function("_main", body))["_main"]
+
+
+def test_a_value_for_the_common_end_is_returned_at_once(tmp_path: Path) -> None:
+    choose = (
+        "BTFSS _PORTB, 0; BRA _00001_DS_; MOVLW 0x05; MOVWF r0x00; BRA _00002_DS_; "
+        "_00001_DS_:; CALL _hand; MOVWF r0x00; _00002_DS_:; MOVF r0x00, W"
+    )
+    calls = "CALL _choose; BANKSEL _x; MOVWF _x, B"
+    out = shrunk(tmp_path, function("_main", calls), function("_choose", choose, "r0x00"))
+    assert "RETLW 0x05" in out["_choose"]
+
+
+def test_a_skip_on_a_flag_over_a_jump_becomes_a_branch(tmp_path: Path) -> None:
+    body = "INCF _LATB, F; BTFSC STATUS, 2; BRA _00001_DS_; CLRF _LATB; _00001_DS_:; CLRF _LATC"
+    assert "BZ _00001_DS_0" in shrunk(tmp_path, function("_main", body))["_main"]
+
+
+def test_jumps_lead_to_where_they_end_and_what_is_never_reached_goes(tmp_path: Path) -> None:
+    body = (
+        "BTFSS _PORTB, 0; BRA _00001_DS_; CLRF _LATB; BRA _00003_DS_; CLRF _LATD; "
+        "_00001_DS_:; BRA _00002_DS_; _00003_DS_:; CLRF _LATA; _00002_DS_:; CLRF _LATC"
+    )
+    out = shrunk(tmp_path, function("_main", body))
+    assert "BRA _00002_DS_0" in out["_main"]
+    assert not {"BRA _00001_DS_0", "CLRF _LATD"} & set(out["_main"])
 
 
 def test_private_names_of_two_files_stay_apart(tmp_path: Path) -> None:

@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of states and events in firmware/lathe/machine.h, cell by cell."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import pytest
+from simulated import little_pin
+from simulated.bench import Bench
+from simulated.processes import branch, on_a_new_chip
+from tornillo.protocol import Alarm, Axis, ErrorCode, State
+from virtual_lathe.chip import Drive
+from virtual_lathe.machine import AxisName
+
+Outcome = tuple[ErrorCode, State, Alarm]
+OK, BUSY, NOT_HOMED, IN_ALARM, NOT_RUNNING = (
+    ErrorCode.OK,
+    ErrorCode.BUSY,
+    ErrorCode.NOT_HOMED,
+    ErrorCode.ALARM,
+    ErrorCode.NOT_RUNNING,
+)
+IDLE, HOMING, RUNNING, HOLD, ALARM = State
+NONE = Alarm.NONE
+
+# event -> what it does in the state; "button" events have no error code, so OK.
+TABLE: dict[str, dict[str, Outcome]] = {
+    "idle": {
+        "button run": (OK, RUNNING, NONE),
+        "button hold": (OK, IDLE, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (OK, HOMING, NONE),
+        "run": (OK, RUNNING, NONE),
+        "hold": (NOT_RUNNING, IDLE, NONE),
+        "resume": (NOT_RUNNING, IDLE, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, IDLE, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
+    "not homed": {
+        "button run": (OK, HOMING, NONE),
+        "button hold": (OK, IDLE, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (OK, HOMING, NONE),
+        "run": (NOT_HOMED, IDLE, NONE),
+        "hold": (NOT_RUNNING, IDLE, NONE),
+        "resume": (NOT_RUNNING, IDLE, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, IDLE, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, IDLE, NONE),
+    },
+    "homing": {
+        "button run": (OK, HOMING, NONE),
+        "button hold": (OK, HOMING, NONE),
+        "button stop": (OK, ALARM, Alarm.STOPPED_HOMING),
+        "home": (BUSY, HOMING, NONE),
+        "run": (BUSY, HOMING, NONE),
+        "hold": (NOT_RUNNING, HOMING, NONE),
+        "resume": (NOT_RUNNING, HOMING, NONE),
+        "stop": (OK, ALARM, Alarm.STOPPED_HOMING),
+        "reset": (OK, HOMING, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+    },
+    "running": {
+        "button run": (OK, RUNNING, NONE),
+        "button hold": (OK, HOLD, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (BUSY, RUNNING, NONE),
+        "run": (BUSY, RUNNING, NONE),
+        "hold": (OK, HOLD, NONE),
+        "resume": (OK, RUNNING, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, RUNNING, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
+    "hold": {
+        "button run": (OK, RUNNING, NONE),
+        "button hold": (OK, HOLD, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (BUSY, HOLD, NONE),
+        "run": (BUSY, HOLD, NONE),
+        "hold": (OK, HOLD, NONE),
+        "resume": (OK, RUNNING, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, HOLD, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
+    "alarm": {
+        "button run": (OK, ALARM, Alarm.LIMIT),
+        "button hold": (OK, ALARM, Alarm.LIMIT),
+        "button stop": (OK, IDLE, NONE),
+        "home": (IN_ALARM, ALARM, Alarm.LIMIT),
+        "run": (IN_ALARM, ALARM, Alarm.LIMIT),
+        "hold": (NOT_RUNNING, ALARM, Alarm.LIMIT),
+        "resume": (NOT_RUNNING, ALARM, Alarm.LIMIT),
+        "stop": (OK, ALARM, Alarm.LIMIT),
+        "reset": (OK, IDLE, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
+}
+
+
+def lathe_in(state: str) -> Bench:
+    """Bring a lathe into a row of the table."""
+    if state == "not homed":
+        return little_pin.lathe_with_pin()
+    if state == "homing":
+        bench = little_pin.lathe_with_pin(start_x=-250)
+        bench.host.home()
+        bench.run(0.05)
+        return bench
+    bench = little_pin.homed_lathe_with_pin()
+    if state in ("running", "hold"):
+        bench.host.run()
+        bench.run(0.2)
+    if state == "hold":
+        bench.host.hold()
+    if state == "alarm":
+        trip_limit(bench)
+    return bench
+
+
+def trip_limit(bench: Bench) -> None:
+    """Break the wire of the X switch, which reads as pressed."""
+    bench.lathe.machine.break_switch_wire(AxisName.X)
+    bench.run(0.02)
+
+
+def happen(bench: Bench, event: str) -> ErrorCode:
+    """Let an event happen and return the answer to it."""
+    kind, _, button = event.partition(" ")
+    if kind == "button":
+        bench.press(button)
+    elif kind == "estop":
+        bench.chip.drive("RD7", Drive.OPEN)
+        bench.run(0.02)
+    elif kind == "limit":
+        trip_limit(bench)
+    else:
+        commands: dict[str, Callable[[], None]] = {
+            "home": bench.host.home,
+            "run": bench.host.run,
+            "hold": bench.host.hold,
+            "resume": bench.host.resume,
+            "stop": bench.host.stop,
+            "reset": bench.host.reset,
+        }
+        return bench.refusal(commands[kind])
+    return OK
+
+
+@pytest.mark.parametrize("state", TABLE)
+@on_a_new_chip
+def test_every_event_does_what_the_table_says(state: str) -> None:
+    bench = lathe_in(state)
+
+    def outcome(event: str) -> Outcome:
+        answer = happen(bench, event)
+        bench.run(0.01)
+        assert bench.homed == (bench.alarm[0] is NONE and bench.state is not HOMING and homed)
+        return answer, bench.state, bench.alarm[0]
+
+    homed = bench.homed
+    found = {event: branch(partial(outcome, event)) for event in TABLE[state]}
+    assert found == TABLE[state]
+
+
+@on_a_new_chip
+def test_homing_ends_idle_and_homed_and_a_finished_part_ends_idle() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    assert (bench.state, bench.homed) == (IDLE, True)
+    bench.host.run()
+    bench.wait_for(IDLE)
+    assert bench.status().finished
+    assert bench.homed
+
+
+@on_a_new_chip
+def test_running_without_a_part_is_refused() -> None:
+    bench = Bench()
+    bench.home()
+    assert bench.refusal(bench.host.run) is ErrorCode.NO_PART
+    assert bench.refusal(lambda: bench.host.run(3)) is ErrorCode.NO_PART
+    assert bench.refusal(lambda: bench.host.run(200)) is ErrorCode.NO_PART
+    assert bench.state is IDLE
+
+
+@on_a_new_chip
+def test_a_part_that_has_changed_in_flash_is_not_cut() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    slot = bench.status().slot
+    assert slot is not None
+    memory = bench.chip.save()
+    flash = bytearray(memory.flash)
+    flash[0x6000 + 1024 * slot + 64 + 30] ^= 4
+    bench.chip.restore(type(memory)(bytes(flash), memory.eeprom))
+    assert bench.refusal(bench.host.run) is ErrorCode.CRC_MISMATCH
+    assert bench.state is IDLE
+
+
+@on_a_new_chip
+def test_a_part_that_no_longer_fits_the_settings_is_not_cut() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    bench.set(zero_x=-(little_pin.RADIUS + 4))
+    assert bench.refusal(bench.host.run) is ErrorCode.INVALID_PART
+    assert bench.state is IDLE
+
+
+@on_a_new_chip
+def test_nothing_is_stored_while_the_machine_moves() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    host = bench.host
+    host.run()
+    bench.run(0.1)
+    before = bench.chip.nonvolatile_counts
+    image = little_pin.image("other")
+    attempts: list[Callable[[], object]] = [
+        lambda: host.upload(image),
+        lambda: host.delete(7),
+        lambda: host.select(7),
+        lambda: bench.set(rapid_rate_x=500),
+        lambda: host.zero(Axis.X, 0),
+    ]
+    assert [bench.refusal(attempt) for attempt in attempts] == [BUSY] * len(attempts)
+    host.hold()
+    assert [bench.refusal(attempt) for attempt in attempts] == [BUSY] * len(attempts)
+    assert bench.chip.nonvolatile_counts == before

@@ -60,7 +60,9 @@ class Shrinker:
         self.slots: list[str] = []
         self.interrupt_slots: list[str] = []
         refuse_recursion(program)
-        names = set(re.findall(r"\b_\w+", assembly))
+        code = re.sub(r";.*", "", assembly)
+        _refuse_hand_written(code, set(program.functions) - {MAIN, INTERRUPT})
+        names = set(re.findall(r"\b_\w+", code))
         called = {name for f in program.functions.values() for name in f.calls()}
         self.outside = called - set(program.functions)
         self.roots = (names | {MAIN, INTERRUPT} | (set(program.functions) - called)) & set(
@@ -171,6 +173,15 @@ class Shrinker:
             before = self.size()
             self.steps["copies"] += drop_repeated_loads(self.program, self.live())
             self.steps["copies"] += drop_unneeded(self.program, self.live(), places=True)
+
+
+def _refuse_hand_written(code: str, functions: set[str]) -> None:
+    """Hand-written code may not use SDCC's registers nor call C other than main."""
+    if found := re.search(r"\br0x[0-9a-f]+\b", code, re.IGNORECASE):
+        raise RefusalError(f"hand-written assembly uses {found.group(0)}")
+    called = re.findall(r"\b(?:r?call|goto|bra)\s+(_\w+)", code, re.IGNORECASE)
+    if both := functions & set(called):
+        raise RefusalError(f"hand-written assembly calls {', '.join(sorted(both))}")
 
 
 def heaviest(program: Program, kept: set[str]) -> str:

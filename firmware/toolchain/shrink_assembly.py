@@ -59,6 +59,7 @@ class Shrinker:
         self.order: list[str] = []
         self.slots: list[str] = []
         self.interrupt_slots: list[str] = []
+        self.repairs = 0
         refuse_recursion(program)
         code = re.sub(r";.*", "", assembly)
         _refuse_hand_written(code, set(program.functions) - {MAIN, INTERRUPT})
@@ -121,7 +122,7 @@ class Shrinker:
         shorten_ways(self.program)
         self._count("jumps", before)
         before = self.size()
-        drop_bank_selections(self.program, self.assembly, self.roots)
+        self.repairs = drop_bank_selections(self.program, self.assembly, self.roots)
         self._count("bank selections", before)
         before = self.size()
         tail_calls(self.program)
@@ -227,6 +228,7 @@ def _report(shrinker: Shrinker, before: Counter[str]) -> str:
         f"  register bytes: {len(shrinker.slots)} main loop, "
         f"{len(shrinker.interrupt_slots)} interrupt"
     )
+    lines.append(f"  bank selections that SDCC forgot: {shrinker.repairs}")
     lines.append(f"  still saving: {' '.join(sorted(shrinker.kept)) or 'none'}")
     return "\n".join(lines)
 

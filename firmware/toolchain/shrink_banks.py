@@ -4,7 +4,8 @@
 SDCC gives each variable a section of its own, so it must select the bank for
 each. Here they share sections that lie in one bank each, the most used ones in
 the first; a BANKSEL goes where the bank is already the right one on every path
-through the program. Variables of the access bank need none at all.
+through the program, and comes where SDCC has forgotten it. Variables
+of the access bank need none at all.
 """
 
 import re
@@ -12,7 +13,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from shrink_flow import successors
-from shrink_model import Function, Program, RefusalError
+from shrink_model import Function, Line, Program, RefusalError
 from shrink_registers import drop_lines
 from shrink_simplify import after_skip
 
@@ -192,15 +193,20 @@ class Banks:
         callee.entry = _met(callee.entry, before)
         return callee.exit
 
+    def wrong(self, function: Function) -> list[int]:
+        """Return the lines that use a variable with another bank selected."""
+        before = self.states[function.name].before
+        return [
+            index
+            for index, line in enumerate(function.body)
+            if line.args[-1:] == ["B"] and before[index] not in (UNREACHED, self.bank(line.args[0]))
+        ]
+
     def check(self) -> None:
         """Raise RefusalError where a variable is used with another bank selected."""
         for name, function in self.program.functions.items():
-            for index, line in enumerate(function.body):
-                before = self.states[name].before[index]
-                if not line.args or line.args[-1] != "B" or before == UNREACHED:
-                    continue
-                if before != self.bank(line.args[0]):
-                    raise RefusalError(f"{name}: wrong bank: {line.text().strip()} ({before})")
+            for index in self.wrong(function):
+                raise RefusalError(f"{name}: wrong bank: {function.body[index].text().strip()}")
 
     def needless(self, function: Function) -> list[int]:
         """Return the BANKSEL lines that select what is selected already."""
@@ -214,13 +220,35 @@ class Banks:
         ]
 
 
-def drop_bank_selections(program: Program, assembly: str, roots: set[str]) -> None:
-    """Group the variables and drop all needless bank selections."""
+def repair_bank_selections(program: Program, roots: set[str]) -> int:
+    """Select the bank where SDCC wrongly left it out; return how often.
+
+    SDCC 4.2 does so after a MOVFF from the same variable: MOVFF needs no bank,
+    but is taken for a use of it.
+    """
+    repaired = 0
+    found = True
+    while found:
+        found = False
+        banks = Banks(program, {}, roots)
+        for function in program.functions.values():
+            body = function.body
+            for index in reversed(banks.wrong(function)):
+                if not after_skip(body, index):
+                    body.insert(index, Line("BANKSEL", body[index].args[:1]))
+                    repaired += 1
+                    found = True
+    return repaired
+
+
+def drop_bank_selections(program: Program, assembly: str, roots: set[str]) -> int:
+    """Group the variables, drop all needless bank selections; return the repairs."""
     where, access = assembly_sections(assembly)
     use_access_bank(program, access)
-    Banks(program, {}, roots).check()
+    repaired = repair_bank_selections(program, roots)
     where |= group_variables(program)
     banks = Banks(program, where, roots)
     for function in program.functions.values():
         drop_lines(function, banks.needless(function))
     Banks(program, where, roots).check()
+    return repaired

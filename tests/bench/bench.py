@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`make bench`: measure, write build/bench/bench.json and the table in docs/benchmarks.md."""
+
+import datetime
+import json
+import platform
+import sys
+from pathlib import Path
+
+from measure import BenchError, Figures, command_line, cut_test_bar, sizes
+from page import fill
+
+ROOT = Path(__file__).resolve().parents[2]
+OUT = ROOT / "build" / "bench" / "bench.json"
+PAGE = ROOT / "docs" / "benchmarks.md"
+
+
+def figures() -> Figures:
+    """Everything that is measured, with the date and the computer."""
+    return {
+        "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
+        "computer": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
+        **sizes(),
+        **command_line(),
+        **cut_test_bar(),
+    }
+
+
+def main() -> int:
+    """Measure and write; return the exit code."""
+    try:
+        found = figures()
+    except BenchError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return 1
+    OUT.parent.mkdir(parents=True, exist_ok=True)
+    OUT.write_text(json.dumps(found, indent=2) + "\n", encoding="utf-8")
+    PAGE.write_text(fill(PAGE.read_text(encoding="utf-8"), found), encoding="utf-8")
+    for key, value in found.items():
+        print(f"{key:26} {value}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of docs/benchmarks.md."""
+
+import re
+
+from measure import Figures
+
+MARKER = re.compile(r"(<!-- bench -->\n).*?(<!-- end -->)", re.DOTALL)
+CYCLES_PER_US = 12
+FLASH, RAM = 32_768, 2_048
+
+Row = tuple[str, str, str]
+
+
+def _cycles(cycles: int) -> str:
+    """Cycles, and what they are in microseconds."""
+    return f"{cycles} cycles ({cycles / CYCLES_PER_US:.1f} us)"
+
+
+def rows(found: Figures) -> list[Row]:
+    """What was measured, ours, and the peer's figure where there is one."""
+    ram = found["ram_static_bytes"] + found["sw_stack_worst_bytes"]
+    flash = found["flash_bytes"]
+    jitter = found["step_jitter_max_cycles"]
+    return [
+        ("flash", f"{flash:,} bytes ({100 * flash / FLASH:.0f} %)", "29,864 bytes (91 %)"),
+        (
+            "RAM, static and worst stack",
+            f"{ram:,} of {RAM:,} bytes",
+            "1,948 of 2,048 bytes (peak seen)",
+        ),
+        ("hardware stack, worst path", f"{found['hw_stack_worst_levels']} of 31 levels", ""),
+        (
+            "step interrupt, worst",
+            f"{_cycles(found['isr_worst_cycles'])}, one axis",
+            "506 cycles (31.6 us) one axis, own time",
+        ),
+        ("low-priority interrupt, worst", _cycles(found["low_isr_worst_cycles"]), ""),
+        (
+            "step times, constant speed, status 10 times a second: largest difference from planned",
+            _cycles(jitter),
+            "7 to 11 us peak to peak",
+        ),
+        (
+            "error of the feed",
+            f"{found['feed_error_ppm'] / 1e4:+.4f} %",
+            "-0.025 to -0.10 %",
+        ),
+        (
+            "fewest steps waiting in the queue while moving",
+            f"{found['stream_low_entries']} of 127",
+            "",
+        ),
+        ("homing both axes, dead steps measured three times", f"{found['homing_s']:.1f} s", ""),
+        ("upload of the test bar, checked and verified", f"{found['upload_s']:.2f} s", ""),
+        ("test bar, RUN to parked, 4 passes", f"{found['test_bar_s']:.1f} s", ""),
+        *(
+            (
+                f"test bar, {entry['name']}",
+                f"{entry['cut_mm']:.3f} mm, error {entry['error_steps']:+g} steps",
+                "",
+            )
+            for entry in found["dimensions"]
+        ),
+        ("* `sim_realtime_factor`, cutting", f"{found['sim_realtime_factor']:.1f}", ""),
+        ("* `sim_realtime_factor_idle`", f"{found['sim_realtime_factor_idle']:.1f}", ""),
+        ("* start of the command line, median of 10", f"{found['cli_start_s']:.2f} s", ""),
+    ]
+
+
+def fill(page: str, found: Figures) -> str:
+    """`page` with its table written anew."""
+    lines = [
+        f"Measured on {found['date']}; {found['computer']}.",
+        "",
+        "| what | Tornillo 0.1.0 | grbl 1.1h |",
+        "|---|---|---|",
+        *(f"| {what} | {ours} | {peers} |" for what, ours, peers in rows(found)),
+    ]
+    table = "\n".join(lines)
+    return MARKER.sub(lambda marks: f"{marks[1]}{table}\n{marks[2]}", page)

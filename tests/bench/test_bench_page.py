@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The table of docs/benchmarks.md."""
+
+from page import fill
+
+FOUND = {
+    "date": "2026-01-31",
+    "computer": "Linux",
+    "flash_bytes": 16_384,
+    "ram_static_bytes": 900,
+    "sw_stack_worst_bytes": 100,
+    "hw_stack_worst_levels": 19,
+    "cli_start_s": 0.123,
+    "sim_realtime_factor": 2.5,
+    "sim_realtime_factor_idle": 5.0,
+    "upload_s": 0.02,
+    "homing_s": 5.5,
+    "test_bar_s": 63.2,
+    "step_jitter_max_cycles": 3,
+    "feed_error_ppm": -44.0,
+    "stream_low_entries": 80,
+    "isr_worst_cycles": 96,
+    "low_isr_worst_cycles": 420,
+    "dimensions": [{"name": "diameter", "wanted_mm": 15.24, "cut_mm": 15.2339, "error_steps": -1}],
+}
+
+
+def test_the_table_is_replaced_and_the_text_around_it_stays() -> None:
+    page = "# Title\n\n<!-- bench -->\nold\n<!-- end -->\n\nend\n"
+    once = fill(page, FOUND)
+    assert once.startswith("# Title\n\n<!-- bench -->\nMeasured on 2026-01-31; Linux.\n")
+    assert once.endswith("\n<!-- end -->\n\nend\n")
+    assert "old" not in once
+    assert fill(once, FOUND) == once
+
+
+def test_figures_stand_beside_those_of_the_peer_with_their_units() -> None:
+    page = fill("<!-- bench -->\n<!-- end -->\n", FOUND)
+    assert "| flash | 16,384 bytes (50 %) | 29,864 bytes (91 %) |" in page
+    assert "| RAM, static and worst stack | 1,000 of 2,048 bytes |" in page
+    assert "| step interrupt, worst | 96 cycles (8.0 us), one axis |" in page
+    assert "| error of the feed | -0.0044 % |" in page
+    assert "| test bar, diameter | 15.234 mm, error -1 steps |  |" in page

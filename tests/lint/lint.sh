@@ -42,7 +42,6 @@ mapfile -t python < <(tracked '*.py')
 mapfile -t shell < <(tracked '*.sh' .ci/run)
 mapfile -t formatted < <(printf '%s\n' "${firmware_c[@]}" "${native[@]}" |
     grep -vx firmware/link/protocol.h)
-mapfile -t other_python < <(printf '%s\n' "${python[@]}" | grep -v '^host-cli/')
 
 # --- C ------------------------------------------------------------------------
 # The words that only SDCC knows are defined away; a special function register

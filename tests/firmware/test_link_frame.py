@@ -151,9 +151,11 @@ def test_a_new_request_with_an_old_seq_is_executed() -> None:
 def test_hello_is_executed_every_time() -> None:
     bench = UsbBench().open()
     before = bench.ask(0, Command.HELLO)
-    change = struct.pack("<Bi", SettingId.ZERO_Z, -7000)
-    assert bench.ask(1, Command.SETTING_SET, change)[0] == ErrorCode.OK
-    assert bench.ask(0, Command.HELLO) != before
+    serial = bench.chip.symbols.ram("usb_serial_descriptor") + 2
+    bench.chip.poke(serial, ord("Z"))
+    after = bench.ask(0, Command.HELLO)
+    assert after != before
+    assert b"Z0000000" in after
 
 
 @on_a_new_chip

@@ -195,6 +195,7 @@ def test_set_address_without_its_status_stage_changes_nothing() -> None:
     bench = UsbBench().enumerate()
     bench.host.control(0x00, SET_CONFIGURATION, 0)
     bench.begin(setup_packet(0x00, SET_ADDRESS, 9, 0))
+    bench.host.control(0x00, SET_CONFIGURATION, 0)
     assert bench.configuration() == 0
     assert bench.chip.peek(UADDR) == bench.host.address
     bench.assert_no_mistakes()
@@ -211,6 +212,30 @@ def test_a_read_that_the_host_gives_up_does_not_disturb_the_next(packets: int) -
     device = bench.host.control(0x80, GET_DESCRIPTOR, DEVICE_DESCRIPTOR, length=18)
     assert device == bench.host.description.device
     bench.assert_no_mistakes()
+
+
+@on_a_new_chip
+def test_a_write_after_a_read_that_was_given_up_is_carried_out() -> None:
+    bench = UsbBench().enumerate()
+    bench.begin(setup_packet(0x80, GET_DESCRIPTOR, CONFIGURATION_DESCRIPTOR, 67))
+    coding = b"\x01\x02\x03\x04\x05\x06\x07"
+    bench.host.control(0x21, SET_LINE_CODING, data=coding)
+    assert bench.host.control(0xA1, GET_LINE_CODING, length=7) == coding
+    bench.assert_no_mistakes()
+
+
+@on_a_new_chip
+def test_data_that_fill_their_last_packet_end_with_an_empty_one() -> None:
+    bench = UsbBench().enumerate()
+    bench.begin(setup_packet(0x80, GET_DESCRIPTOR, CONFIGURATION_DESCRIPTOR, 255))
+    bench.chip.set_variable("usb_left", 16)  # as if the descriptor had 32 bytes
+    for size in (16, 16, 0):
+        result = bench.host.transaction(Token.IN, 0)
+        assert (result.handshake, len(result.data)) == (Handshake.ACK, size)
+        bench.host.wait(0.0005)
+    assert bench.host.transaction(Token.OUT, 0, 1, b"").handshake == Handshake.ACK
+    bench.host.wait(0.0005)
+    assert bench.configuration() == 1
 
 
 @on_a_new_chip

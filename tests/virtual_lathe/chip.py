@@ -154,9 +154,7 @@ class Chip:
         """Run for a simulated time in seconds."""
         return self.run_to(self.cycle + round(seconds * CYCLES_PER_SECOND))
 
-    def run_until(
-        self, predicate: Callable[[], bool], timeout: float, every: float = 1e-3
-    ) -> bool:
+    def run_until(self, predicate: Callable[[], bool], timeout: float, every: float = 1e-3) -> bool:
         """Run until ``predicate()`` holds, looked at every ``every`` simulated seconds.
 
         Returns:
@@ -347,8 +345,7 @@ class Chip:
         entries = (RamWriteC * 4096)()
         count = min(4096, self._native.vl_ram_writes(entries, 4096))
         return [
-            RamWrite(int(e.cycle), int(e.address), int(e.value), int(e.pc))
-            for e in entries[:count]
+            RamWrite(int(e.cycle), int(e.address), int(e.value), int(e.pc)) for e in entries[:count]
         ]
 
     def open_vcd(self, path: Path | str) -> None:

@@ -125,9 +125,7 @@ class Session:
     def __init__(self, arguments: argparse.Namespace) -> None:
         """Switch the lathe on and make the terminal."""
         self.arguments = arguments
-        self.lathe = VirtualLathe(
-            options_from(arguments), load_memory(arguments.eeprom_file)
-        )
+        self.lathe = VirtualLathe(options_from(arguments), load_memory(arguments.eeprom_file))
         if arguments.vcd:
             self.lathe.chip.open_vcd(arguments.vcd)
         self.terminal = Terminal(self.lathe.host, arguments.port_link)

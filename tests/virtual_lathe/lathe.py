@@ -33,6 +33,8 @@ class Options:
     ``start_x`` and ``start_z`` are the slides' places when power comes; ``seed`` decides how much
     of the backlash is taken up then. ``cut_rate_limit`` is the fastest feed in steps/s that is
     not a crash. ``isr_limit`` is the longest high-priority interrupt allowed, in cycles.
+    ``dry_symbol`` names a variable of the firmware and ``dry_mask`` its bits that are set when the
+    step stream has run dry; an empty name checks nothing.
     """
 
     firmware: Path = DEFAULT_FIRMWARE
@@ -51,6 +53,8 @@ class Options:
     pull_in: float = 1100.0
     cut_rate_limit: float = 900.0
     isr_limit: int = 0
+    dry_symbol: str = ""
+    dry_mask: int = 0xFF
     bounce_us: int = 0
     noise_hz: int = 0
     seed: int = 1
@@ -65,8 +69,6 @@ class Check:
     broken: tuple[str, ...]
 
 
-
-
 class VirtualLathe:
     """A lathe with firmware in it, just switched on; time stands still until it is told to run."""
 
@@ -78,9 +80,7 @@ class VirtualLathe:
             self.chip.restore(memory)
         self.host = UsbHost(self.chip, self.run_to)
         self.port = SerialPort(self.host)
-        self.machine = Machine(
-            self._axis_options(AxisName.X), self._axis_options(AxisName.Z)
-        )
+        self.machine = Machine(self._axis_options(AxisName.X), self._axis_options(AxisName.Z))
         self.machine.set_switch_quality(
             self.options.bounce_us, self.options.noise_hz, self.options.seed
         )
@@ -96,6 +96,7 @@ class VirtualLathe:
         self._faults: list[Fault] = []
         self._furthest: dict[AxisName, tuple[float, float]] = {}
         self._timed: list[tuple[int, Callable[[], None]]] = []
+        self._dry_at: list[str] = []
         self._wall_start = time.monotonic()
         self.chip.drive(ESTOP_PIN, Drive.LOW)
         for pin in BUTTONS.values():
@@ -156,9 +157,7 @@ class VirtualLathe:
         """Let simulated time pass."""
         self.run_to(self.chip.cycle + round(seconds * CYCLES_PER_SECOND))
 
-    def run_until(
-        self, predicate: Callable[[], bool], timeout: float, every: float = 5e-3
-    ) -> bool:
+    def run_until(self, predicate: Callable[[], bool], timeout: float, every: float = 5e-3) -> bool:
         """Run until ``predicate()`` holds; False when ``timeout`` simulated seconds passed."""
         end = self.chip.cycle + round(timeout * CYCLES_PER_SECOND)
         while not predicate():
@@ -185,6 +184,9 @@ class VirtualLathe:
                 low, high = self._furthest.get(name, (values[0] / 2, values[0] / 2))
                 self._furthest[name] = min(low, min(values) / 2), max(high, max(values) / 2)
         self._faults += self.machine.take_faults()
+        symbol = self.options.dry_symbol
+        if symbol and not self._dry_at and self.chip.variable(symbol) & self.options.dry_mask:
+            self._dry_at.append(f"seen at cycle {self.chip.cycle}")
 
     # -- hands ------------------------------------------------------------------------------------
 
@@ -236,9 +238,7 @@ class VirtualLathe:
         """Evaluate the expectations that must hold during every run."""
         by_kind: dict[FaultKind, list[str]] = {kind: [] for kind in FaultKind}
         for fault in self._faults:
-            by_kind[fault.kind].append(
-                f"{fault.axis.name} at cycle {fault.cycle}: {fault.value}"
-            )
+            by_kind[fault.kind].append(f"{fault.axis.name} at cycle {fault.cycle}: {fault.value}")
         outside = [
             f"{name.name} {low:g}..{high:g}"
             for name, (low, high) in self._furthest.items()
@@ -255,6 +255,7 @@ class VirtualLathe:
             Check("slides inside the travel", tuple(outside)),
             Check("no crash", tuple(str(crash) for crash in self.workpiece.crashes)),
             Check("USB used by the book", tuple(self.host.mistakes)),
+            Check("step stream never dry", tuple(self._dry_at)),
             Check("step interrupt inside its window", () if kept else tuple(slow)),
         ]
 

@@ -136,9 +136,7 @@ class Machine:
 
     def break_switch_wire(self, name: AxisName, broken: bool = True) -> None:
         """Break or mend the wire of a limit switch: a broken one reads as pressed."""
-        self._native.vl_switch_broken(
-            int(name), int(broken), self._options[name].switch_travel
-        )
+        self._native.vl_switch_broken(int(name), int(broken), self._options[name].switch_travel)
 
     def set_motor_power(self, on: bool) -> None:
         """Switch the motor supply; without it the rotors stay where they are."""

@@ -50,9 +50,7 @@ class SerialPort:
         while len(self._received) < size:
             self._received += self._host.receive()
             waited = (self._host.chip.cycle - start) / CYCLES_PER_SECOND
-            if len(self._received) >= size or (
-                self.timeout is not None and waited >= self.timeout
-            ):
+            if len(self._received) >= size or (self.timeout is not None and waited >= self.timeout):
                 break
             self._check()
             self._host.wait(POLL_S)

@@ -7,14 +7,25 @@ import os
 import termios
 import tty
 from pathlib import Path
-
-from .usb_host import UsbHost
+from typing import Protocol
 
 CHUNK = 1024
 
 
+class BytePort(Protocol):
+    """What the terminal needs of a host: :class:`virtual_lathe.usb_host.UsbHost` has it."""
+
+    port_open: bool
+
+    def send(self, data: bytes) -> int:
+        """Take bytes for the device; returns how many."""
+
+    def receive(self, room: int = 4096) -> bytes:
+        """Give at most ``room`` bytes that came from the device."""
+
+
 class Terminal:
-    """A raw pseudo-terminal joined to the serial port of a :class:`UsbHost`.
+    """A raw pseudo-terminal joined to the serial port of a host.
 
     Bytes wait on both sides when the other is slow; nothing is lost. While the cable is out what
     is written to the terminal stays in it, as in the buffer of a stopped modem.
@@ -23,7 +34,7 @@ class Terminal:
         link: a symbolic link to make to the terminal, replaced if it is one already.
     """
 
-    def __init__(self, host: UsbHost, link: Path | None = None) -> None:
+    def __init__(self, host: BytePort, link: Path | None = None) -> None:
         """Open the terminal and make the link."""
         self._host = host
         self._link = link

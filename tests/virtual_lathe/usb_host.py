@@ -155,9 +155,7 @@ class UsbHost:
         count = ctypes.c_uint()
         received = ctypes.c_uint()
         while True:
-            result = self._native.vl_usb_result(
-                buffer, ctypes.byref(count), ctypes.byref(received)
-            )
+            result = self._native.vl_usb_result(buffer, ctypes.byref(count), ctypes.byref(received))
             if result >= 0:
                 return Result(Handshake(result), bytes(buffer[: count.value]), received.value)
             self._run_to(self.chip.cycle + CYCLES_PER_SECOND // 1000)
@@ -271,9 +269,7 @@ class UsbHost:
         self._ask_qualifier()
         head = self.control(0x80, GET_DESCRIPTOR, CONFIGURATION << 8, length=9)
         total = int(struct.unpack_from("<H", head, 2)[0])
-        found.configuration = self.control(
-            0x80, GET_DESCRIPTOR, CONFIGURATION << 8, length=total
-        )
+        found.configuration = self.control(0x80, GET_DESCRIPTOR, CONFIGURATION << 8, length=total)
         self._read_strings()
         self._find_endpoints()
         self.control(0x00, SET_CONFIGURATION, found.configuration[5])
@@ -323,9 +319,7 @@ class UsbHost:
         self.control(0x21, SET_LINE_CODING, data=struct.pack("<IBBB", 115200, 0, 0, 8))
         self.control(0x21, SET_CONTROL_LINE_STATE, DTR | RTS)
         found = self.description
-        self._native.vl_usb_open(
-            self.address, found.bulk_in, found.bulk_out, found.notification
-        )
+        self._native.vl_usb_open(self.address, found.bulk_in, found.bulk_out, found.notification)
         self.port_open = True
 
     def close_port(self) -> None:

@@ -153,9 +153,7 @@ class Workpiece:
     def gouge_max_steps(self, wanted: WantedPart) -> float:
         """Return how far the surface lies below the wanted one at its worst, in steps."""
         surface = wanted.surface()
-        return max(
-            (max(0.0, want - self.radius_at(z)) for z, want in surface.items()), default=0.0
-        )
+        return max((max(0.0, want - self.radius_at(z)) for z, want in surface.items()), default=0.0)
 
     def face_position(self, inner: int) -> int:
         """Return the z (steps) of the end face outside radius ``inner``."""
@@ -191,9 +189,7 @@ class Workpiece:
         step_z_nm: int,
     ) -> list[dict[str, Any]]:
         own = [
-            z
-            for z in range(cylinder.end, cylinder.start + 1)
-            if surface.get(z) == cylinder.radius
+            z for z in range(cylinder.end, cylinder.start + 1) if surface.get(z) == cylinder.radius
         ]
         if not own:
             return []
@@ -208,9 +204,7 @@ class Workpiece:
                 shoulder -= 1
             end = shoulder
         wanted_length = cylinder.start - cylinder.end
-        length = _dimension(
-            f"{name} length", wanted_length, cylinder.start - end, step_z_nm / 1e6
-        )
+        length = _dimension(f"{name} length", wanted_length, cylinder.start - end, step_z_nm / 1e6)
         return [measured, length]
 
 

@@ -17,7 +17,8 @@
 
 int initialize_gpsim_core();
 
-namespace lathe {
+namespace lathe
+{
 
 Chip &chip()
 {
@@ -25,10 +26,12 @@ Chip &chip()
     return instance;
 }
 
-namespace {
+namespace
+{
 
 // gpsim talks to standard output while it loads; nobody there expects it.
-class Silence {
+class Silence
+{
 public:
     Silence() : saved_(dup(STDOUT_FILENO))
     {
@@ -50,11 +53,17 @@ private:
 };
 
 // Sits on an unused address so that gpsim tells it about every reset.
-class ResetWitness : public sfr_register {
+class ResetWitness : public sfr_register
+{
 public:
     explicit ResetWitness(Module *owner)
-        : sfr_register(owner, "reset_witness", "reports resets") {}
-    void reset(RESET_TYPE type) override { chip().note_reset(type); }
+        : sfr_register(owner, "reset_witness", "reports resets")
+    {
+    }
+    void reset(RESET_TYPE type) override
+    {
+        chip().note_reset(type);
+    }
 };
 
 constexpr unsigned WITNESS_ADDRESS = 0xF60;
@@ -199,20 +208,23 @@ void Chip::attend()
     attention_ = false;
     if (reset_seen_)
         finish_reset();
-    for (auto &hook : settle_)
+    for (const auto &hook : settle_)
         hook();
 }
 
 // The core waits for a flash write; the rest of the chip and the world go on.
-void Chip::stand_still()
+void Chip::stand_still(uint64_t until)
 {
-    while (now() < stalled_until_ && !reset_seen_) {
+    uint64_t end = std::min(until, stalled_until_);
+    while (now() < end && !reset_seen_) {
         get_cycles().increment();
         if (now() >= next_event_)
             run_events();
     }
-    stalled_until_ = 0;
-    classify();
+    if (now() >= stalled_until_) {
+        stalled_until_ = 0;
+        classify();
+    }
 }
 
 // Instructions that gpsim does not model, or whose effect we count.
@@ -222,8 +234,8 @@ void Chip::note_instruction(uint8_t flag)
         feed_watchdog();
     if (flag & TBLWT) {
         unsigned mode = cpu->program_memory[cpu->pc->value]->get_opcode() & 3;
-        unsigned pointer = cpu->tbl.tblptrl.get_value() |
-                           cpu->tbl.tblptrh.get_value() << 8;
+        unsigned pointer =
+            cpu->tbl.tblptrl.get_value() | cpu->tbl.tblptrh.get_value() << 8;
         nonvolatile().latch(pointer + (mode == 3), cpu->tbl.tablat.get_value());
     }
 }
@@ -238,12 +250,14 @@ bool Chip::boundary(uint64_t until, bool first)
         attend();
     if (stop_reason_ != VL_STOP_CYCLE || now() >= until)
         return false;
+    if (stalled_until_) {
+        stand_still(until);
+        if (reset_seen_)
+            attend();
+        return stalled_until_ == 0;
+    }
     if (cpu->mCurrentPhase != cpu->mExecute1Cycle)
         return true;
-    if (stalled_until_) {
-        stand_still();
-        return true;
-    }
     if (pending_check_) {
         // The enable bits changed behind gpsim's back: let it look again.
         pending_check_ = false;
@@ -271,7 +285,8 @@ int Chip::run(uint64_t until)
     for (;;) {
         ClockPhase *phase = cpu->mCurrentPhase;
         bool execute = phase == cpu->mExecute1Cycle;
-        if ((execute || phase == cpu->mIdle) && !boundary(until, first))
+        bool between = execute || stalled_until_ || phase == cpu->mIdle;
+        if (between && !boundary(until, first))
             break;
         first = false;
         phase = cpu->mCurrentPhase;
@@ -287,8 +302,8 @@ int Chip::run(uint64_t until)
             enter_interrupt(stack_before, start);
         if (flag & RETFIE)
             leave_interrupt();
-        stack_depth_max = std::max(stack_depth_max,
-                                   unsigned(cpu->stack->pointer));
+        stack_depth_max =
+            std::max(stack_depth_max, unsigned(cpu->stack->pointer));
         if (breaks.global_break) {
             breaks.clear_global();
             stop_reason_ = VL_STOP_HALT;

@@ -25,7 +25,8 @@
 #include <gpsim/ioports.h>
 #include <gpsim/stimuli.h>
 
-namespace lathe {
+namespace lathe
+{
 
 // 48 MHz core: four clocks an instruction cycle.
 constexpr uint64_t CYCLES_PER_SECOND = 12000000;
@@ -36,10 +37,24 @@ constexpr unsigned EEPROM_BYTES = 0x100;
 
 // Addresses of special function registers, names as in the data sheet.
 enum Sfr : unsigned {
-    UFRML = 0xF66, UFRMH = 0xF67, UIR = 0xF68, UIE = 0xF69, UEIR = 0xF6A,
-    UEIE = 0xF6B, USTAT = 0xF6C, UCON = 0xF6D, UADDR = 0xF6E, UCFG = 0xF6F,
-    UEP0 = 0xF70, PORTA = 0xF80, PORTB = 0xF81, PORTC = 0xF82,
-    PORTD = 0xF83, PORTE = 0xF84, PIR2 = 0xFA1, RCON_ADDRESS = 0xFD0,
+    UFRML = 0xF66,
+    UFRMH = 0xF67,
+    UIR = 0xF68,
+    UIE = 0xF69,
+    UEIR = 0xF6A,
+    UEIE = 0xF6B,
+    USTAT = 0xF6C,
+    UCON = 0xF6D,
+    UADDR = 0xF6E,
+    UCFG = 0xF6F,
+    UEP0 = 0xF70,
+    PORTA = 0xF80,
+    PORTB = 0xF81,
+    PORTC = 0xF82,
+    PORTD = 0xF83,
+    PORTE = 0xF84,
+    PIR2 = 0xFA1,
+    RCON_ADDRESS = 0xFD0,
     STKPTR = 0xFFC
 };
 
@@ -47,53 +62,74 @@ enum Sfr : unsigned {
 // fetch at the vector to the end of its retfie.
 struct InterruptCost {
     uint64_t entries = 0;
-    uint64_t total = 0;     // without the time of interrupts nested in it
+    uint64_t total = 0; // without the time of interrupts nested in it
     uint64_t worst = 0;
     uint64_t best = NEVER;
-    uint64_t worst_at = 0;  // cycle of the entry that cost most
+    uint64_t worst_at = 0; // cycle of the entry that cost most
 };
 
-class Chip {
+class Chip
+{
 public:
     _16bit_processor *cpu = nullptr;
 
     bool load(const char *path);
-    uint64_t now() const { return get_cycles().get(); }
+    uint64_t now() const
+    {
+        return get_cycles().get();
+    }
 
     // Runs until the clock reaches `until` (it may overshoot by the rest of
     // one instruction), a break address is reached or stop() is called.
     int run(uint64_t until);
-    void stop(int reason) { stop_reason_ = reason; wake(); }
+    void stop(int reason)
+    {
+        stop_reason_ = reason;
+        wake();
+    }
 
     // Calls `action` at the first instruction boundary at or after `cycle`.
     void at(uint64_t cycle, std::function<void()> action);
     // Asks for the settle hooks to run after the present instruction.
-    void wake() { attention_ = true; }
+    void wake()
+    {
+        attention_ = true;
+    }
     // Called once after each instruction that called wake().
-    void add_settle(std::function<void()> hook) { settle_.push_back(hook); }
+    void add_settle(std::function<void()> hook)
+    {
+        settle_.push_back(hook);
+    }
     // Called after each reset of the processor, with gpsim's reset type.
     void add_on_reset(std::function<void(RESET_TYPE)> hook);
 
     void reset(RESET_TYPE type);
     void note_reset(RESET_TYPE type);
     // Holds the core until `cycle`, as a flash write does.
-    void stall(uint64_t cycle) { stalled_until_ = cycle; }
+    void stall(uint64_t cycle)
+    {
+        stalled_until_ = cycle;
+    }
     // Looks through the program again after it was changed.
     void classify();
     void set_break(unsigned address, bool enabled);
     void clear_statistics();
 
-    InterruptCost interrupts[2];        // 0 low, 1 high priority
-    unsigned stack_depth_max = 0;       // of the hardware return stack
-    std::vector<uint8_t> executed;      // one flag per program word
-    std::vector<std::pair<uint64_t, int>> resets;   // cycle, RESET_TYPE
+    InterruptCost interrupts[2];   // 0 low, 1 high priority
+    unsigned stack_depth_max = 0;  // of the hardware return stack
+    std::vector<uint8_t> executed; // one flag per program word
+    std::vector<std::pair<uint64_t, int>> resets; // cycle, RESET_TYPE
 
 private:
     enum Flag : uint8_t { BREAK = 1, RETFIE = 2, TBLWT = 4, CLRWDT = 8 };
-    struct Entry { int level; uint64_t start; uint64_t nested; };
+    struct Entry {
+        int level;
+        uint64_t start;
+        uint64_t nested;
+    };
 
     void attend();
-    void stand_still();
+    void stand_still(uint64_t until);
     void note_instruction(uint8_t flag);
     void finish_reset();
     void repair_compare();

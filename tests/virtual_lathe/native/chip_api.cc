@@ -12,22 +12,39 @@
 using lathe::chip;
 using lathe::nonvolatile;
 
-namespace {
+namespace
+{
 
 // A register that writes down who wrote to it and lets the write through.
-class Watched : public Register {
+class Watched : public Register
+{
 public:
     Watched(Module *owner, Register *inner, unsigned where)
         : Register(owner, inner->name().c_str()), inner_(inner)
     {
         address = where;
     }
-    unsigned get() override { return inner_->get(); }
-    unsigned get_value() override { return inner_->get_value(); }
+    unsigned get() override
+    {
+        return inner_->get();
+    }
+    unsigned get_value() override
+    {
+        return inner_->get_value();
+    }
     void put(unsigned value) override;
-    void put_value(unsigned value) override { inner_->put_value(value); }
-    void reset(RESET_TYPE type) override { inner_->reset(type); }
-    REGISTER_TYPES isa() override { return inner_->isa(); }
+    void put_value(unsigned value) override
+    {
+        inner_->put_value(value);
+    }
+    void reset(RESET_TYPE type) override
+    {
+        inner_->reset(type);
+    }
+    REGISTER_TYPES isa() override
+    {
+        return inner_->isa();
+    }
 
 private:
     Register *inner_;
@@ -39,22 +56,30 @@ std::vector<vl_ram_write> write_log;
 void Watched::put(unsigned value)
 {
     if (write_log.size() < WRITE_LOG_MAX)
-        write_log.push_back({chip().now(), address, value,
-                             chip().cpu->pc->value * 2});
+        write_log.push_back(
+            {chip().now(), address, value, chip().cpu->pc->value * 2});
     inner_->put(value);
 }
 
 int reset_kind(int type)
 {
     switch (type) {
-    case POR_RESET: return VL_RESET_POWER_ON;
-    case BOD_RESET: return VL_RESET_BROWN_OUT;
-    case WDT_RESET: return VL_RESET_WATCHDOG;
-    case MCLR_RESET: return VL_RESET_MCLR;
-    case STKOVF_RESET: return VL_RESET_STACK_FULL;
-    case STKUNF_RESET: return VL_RESET_STACK_EMPTY;
-    case SOFT_RESET: return VL_RESET_SOFTWARE;
-    default: return VL_RESET_OTHER;
+    case POR_RESET:
+        return VL_RESET_POWER_ON;
+    case BOD_RESET:
+        return VL_RESET_BROWN_OUT;
+    case WDT_RESET:
+        return VL_RESET_WATCHDOG;
+    case MCLR_RESET:
+        return VL_RESET_MCLR;
+    case STKOVF_RESET:
+        return VL_RESET_STACK_FULL;
+    case STKUNF_RESET:
+        return VL_RESET_STACK_EMPTY;
+    case SOFT_RESET:
+        return VL_RESET_SOFTWARE;
+    default:
+        return VL_RESET_OTHER;
     }
 }
 
@@ -68,9 +93,18 @@ int vl_load(const char *path)
     return 0;
 }
 
-int vl_run(uint64_t until) { return chip().run(until); }
-uint64_t vl_cycle(void) { return chip().now(); }
-unsigned vl_program_counter(void) { return chip().cpu->pc->value * 2; }
+int vl_run(uint64_t until)
+{
+    return chip().run(until);
+}
+uint64_t vl_cycle(void)
+{
+    return chip().now();
+}
+unsigned vl_program_counter(void)
+{
+    return chip().cpu->pc->value * 2;
+}
 
 unsigned vl_peek(unsigned address)
 {
@@ -164,12 +198,18 @@ void vl_config_read(uint8_t bytes[14])
 void vl_interrupts(int priority, struct vl_interrupt_cost *cost)
 {
     const lathe::InterruptCost &from = chip().interrupts[priority ? 1 : 0];
-    *cost = {from.entries, from.total, from.entries ? from.best : 0,
-             from.worst, from.worst_at};
+    *cost = {from.entries, from.total, from.entries ? from.best : 0, from.worst,
+             from.worst_at};
 }
 
-unsigned vl_stack_depth_max(void) { return chip().stack_depth_max; }
-void vl_clear_statistics(void) { chip().clear_statistics(); }
+unsigned vl_stack_depth_max(void)
+{
+    return chip().stack_depth_max;
+}
+void vl_clear_statistics(void)
+{
+    chip().clear_statistics();
+}
 
 void vl_executed(uint8_t flags[16384])
 {
@@ -182,8 +222,8 @@ int vl_watch_writes(unsigned first, unsigned last)
         return -1;
     Register **registers = chip().cpu->registers;
     for (unsigned address = first; address <= last; address++)
-        registers[address] = new Watched(chip().cpu, registers[address],
-                                         address);
+        registers[address] =
+            new Watched(chip().cpu, registers[address], address);
     return 0;
 }
 

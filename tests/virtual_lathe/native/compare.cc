@@ -5,9 +5,11 @@
 
 #include "chip.hh"
 
-namespace lathe {
+namespace lathe
+{
 
-namespace {
+namespace
+{
 
 constexpr unsigned CCPR2L_ADDRESS = 0xFBB, CCPR1L_ADDRESS = 0xFBE;
 constexpr unsigned PIR1_ADDRESS = 0xF9E;
@@ -16,10 +18,13 @@ constexpr uint8_t CCP2IF = 0x01, CCP1IF = 0x04;
 constexpr uint8_t TMR1ON = 0x01, TMR1CS = 0x02, PRESCALER = 0x30;
 constexpr unsigned COMPARE_MASK = 0x0C, COMPARE = 0x08;
 
-class ZeroCompare : public TriggerObject {
+class ZeroCompare : public TriggerObject
+{
 public:
     ZeroCompare(unsigned low, unsigned flags, uint8_t bit, CCPCON &control)
-        : low_(low), flags_(flags), bit_(bit), control_(control) {}
+        : low_(low), flags_(flags), bit_(bit), control_(control)
+    {
+    }
 
     void value_written()
     {
@@ -31,8 +36,8 @@ public:
         bool runs = timer & TMR1ON && !(timer & (TMR1CS | PRESCALER));
         if (!wanted() || !runs)
             return;
-        unsigned now = chip().cpu->tmr1l.get_value() |
-                       chip().cpu->tmr1h.get_value() << 8;
+        unsigned now =
+            chip().cpu->tmr1l.get_value() | chip().cpu->tmr1h.get_value() << 8;
         at_ = chip().now() + 0x10000 - (now & 0xFFFF);
         get_cycles().set_break(at_, this);
     }
@@ -48,7 +53,9 @@ public:
         get_cycles().set_break(at_, this);
     }
 
-    void callback_print() override {}
+    void callback_print() override
+    {
+    }
 
 private:
     bool wanted() const
@@ -65,13 +72,22 @@ private:
 };
 
 // Half of a compare value: tells the model after gpsim has taken it.
-class CompareByte : public sfr_register {
+class CompareByte : public sfr_register
+{
 public:
     CompareByte(Module *owner, Register *inner, ZeroCompare &model)
         : sfr_register(owner, (inner->name() + "_model").c_str(), ""),
-          inner_(inner), model_(model) {}
-    unsigned get() override { return inner_->get(); }
-    unsigned get_value() override { return inner_->get_value(); }
+          inner_(inner), model_(model)
+    {
+    }
+    unsigned get() override
+    {
+        return inner_->get();
+    }
+    unsigned get_value() override
+    {
+        return inner_->get_value();
+    }
     void put(unsigned v) override
     {
         inner_->put(v);

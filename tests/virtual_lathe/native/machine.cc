@@ -16,9 +16,11 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lathe {
+namespace lathe
+{
 
-namespace {
+namespace
+{
 
 constexpr int X_COILS = D + 0, Z_COILS = B + 0;
 constexpr int X_SWITCH = B + 4, Z_SWITCH = B + 5;
@@ -28,9 +30,8 @@ constexpr int NO_CURRENT = -1, ILLEGAL = -2;
 
 // Place of a coil pattern in the half-step ring 5,1,9,8,10,2,6,4.
 constexpr int RING_INDEX[16] = {
-    NO_CURRENT, 1,       5,       ILLEGAL, 7,       0,       6,       ILLEGAL,
-    3,          2,       4,       ILLEGAL, ILLEGAL, ILLEGAL, ILLEGAL, ILLEGAL
-};
+    NO_CURRENT, 1, 5, ILLEGAL, 7,       0,       6,       ILLEGAL,
+    3,          2, 4, ILLEGAL, ILLEGAL, ILLEGAL, ILLEGAL, ILLEGAL};
 
 int64_t floor_mod(int64_t a, int64_t b)
 {
@@ -184,8 +185,8 @@ void Axis::turn(uint64_t cycle, int half_steps)
         return;
     state.slide = slide;
     update_switch();
-    machine().moves.push_back({cycle, machine().axes[0].state.slide,
-                               machine().axes[1].state.slide});
+    machine().moves.push_back(
+        {cycle, machine().axes[0].state.slide, machine().axes[1].state.slide});
 }
 
 // ---- contacts ---------------------------------------------------------------
@@ -260,15 +261,15 @@ void Machine::attach()
 
 using lathe::machine;
 
-namespace {
+namespace
+{
 
 bool is_axis(int axis)
 {
     return axis == VL_X || axis == VL_Z;
 }
 
-template <typename T>
-int take(std::vector<T> &from, T *entries, int room)
+template <typename T> int take(std::vector<T> &from, T *entries, int room)
 {
     int count = std::min<int>(room, from.size());
     std::copy_n(from.begin(), count, entries);
@@ -278,7 +279,10 @@ int take(std::vector<T> &from, T *entries, int room)
 
 } // namespace
 
-void vl_machine_attach(void) { machine().attach(); }
+void vl_machine_attach(void)
+{
+    machine().attach();
+}
 
 int vl_axis_setup(int axis, const struct vl_axis_setup *setup)
 {

@@ -9,10 +9,12 @@
 
 #include <random>
 
-namespace lathe {
+namespace lathe
+{
 
 // One axis, from the coil pattern to the switch.
-class Axis {
+class Axis
+{
 public:
     void attach(int number, int switch_pin);
     void coils(uint64_t cycle, unsigned pattern);
@@ -34,22 +36,23 @@ private:
 
     int number_ = 0, switch_pin_ = 0;
     unsigned pattern_ = 0;
-    int last_ring_ = -1;            // ring index of the last valid pattern
+    int last_ring_ = -1; // ring index of the last valid pattern
     uint64_t moved_at_ = 0;
-    double speed_ = 0;              // full steps/s, with sign
+    double speed_ = 0; // full steps/s, with sign
     bool power_ = true;
     int64_t backlash_ = 0, travel_ = 0;
     bool contact_open_ = false, broken_ = false;
 };
 
-class Machine {
+class Machine
+{
 public:
     void attach();
-    Axis axes[2];                   // 0 X, 1 Z
+    Axis axes[2]; // 0 X, 1 Z
     std::vector<vl_move> moves;
     std::vector<vl_fault> faults;
-    uint64_t bounce = 0;            // cycles a contact bounces
-    uint64_t noise = 0;             // mean cycles between pulses, 0 = none
+    uint64_t bounce = 0; // cycles a contact bounces
+    uint64_t noise = 0;  // mean cycles between pulses, 0 = none
     std::mt19937 random{1};
     void contact(int pin, bool open);
     void start_noise();

@@ -8,13 +8,20 @@
 #include <algorithm>
 #include <cstring>
 
-namespace lathe {
+namespace lathe
+{
 
-namespace {
+namespace
+{
 
 enum : uint8_t {
-    RD = 0x01, WR = 0x02, WREN = 0x04, WRERR = 0x08, FREE = 0x10,
-    CFGS = 0x40, EEPGD = 0x80
+    RD = 0x01,
+    WR = 0x02,
+    WREN = 0x04,
+    WRERR = 0x08,
+    FREE = 0x10,
+    CFGS = 0x40,
+    EEPGD = 0x80
 };
 constexpr unsigned EECON1_ADDRESS = 0xFA6, EECON2_ADDRESS = 0xFA7;
 constexpr unsigned EEDATA_ADDRESS = 0xFA8, EEADR_ADDRESS = 0xFA9;
@@ -28,30 +35,69 @@ constexpr uint64_t FLASH_CYCLES = 2 * CYCLES_PER_MS;
 // sequence must not be interrupted.
 constexpr uint64_t UNLOCK_GAP_CYCLES = 2;
 
-class Eecon1 : public sfr_register {
+class Eecon1 : public sfr_register
+{
 public:
-    explicit Eecon1(Module *m) : sfr_register(m, "eecon1_model", "") {}
-    unsigned get() override { return nonvolatile().control(); }
-    unsigned get_value() override { return nonvolatile().control(); }
-    void put(unsigned v) override { nonvolatile().set_control(v); }
-    void put_value(unsigned v) override { nonvolatile().set_control(v); }
-    void reset(RESET_TYPE) override {}
+    explicit Eecon1(Module *m) : sfr_register(m, "eecon1_model", "")
+    {
+    }
+    unsigned get() override
+    {
+        return nonvolatile().control();
+    }
+    unsigned get_value() override
+    {
+        return nonvolatile().control();
+    }
+    void put(unsigned v) override
+    {
+        nonvolatile().set_control(v);
+    }
+    void put_value(unsigned v) override
+    {
+        nonvolatile().set_control(v);
+    }
+    void reset(RESET_TYPE) override
+    {
+    }
 };
 
-class Eecon2 : public sfr_register {
+class Eecon2 : public sfr_register
+{
 public:
-    explicit Eecon2(Module *m) : sfr_register(m, "eecon2_model", "") {}
-    unsigned get() override { return 0; }
-    unsigned get_value() override { return 0; }
-    void put(unsigned v) override { nonvolatile().unlock(v); }
-    void put_value(unsigned v) override { nonvolatile().unlock(v); }
-    void reset(RESET_TYPE) override {}
+    explicit Eecon2(Module *m) : sfr_register(m, "eecon2_model", "")
+    {
+    }
+    unsigned get() override
+    {
+        return 0;
+    }
+    unsigned get_value() override
+    {
+        return 0;
+    }
+    void put(unsigned v) override
+    {
+        nonvolatile().unlock(v);
+    }
+    void put_value(unsigned v) override
+    {
+        nonvolatile().unlock(v);
+    }
+    void reset(RESET_TYPE) override
+    {
+    }
 };
 
-class Plain : public sfr_register {
+class Plain : public sfr_register
+{
 public:
-    Plain(Module *m, const char *name) : sfr_register(m, name, "") {}
-    void reset(RESET_TYPE) override {}
+    Plain(Module *m, const char *name) : sfr_register(m, name, "")
+    {
+    }
+    void reset(RESET_TYPE) override
+    {
+    }
 };
 
 void install(unsigned address, Register *reg)
@@ -112,8 +158,8 @@ void Nonvolatile::set_flash(unsigned address, uint8_t byte)
 {
     unsigned even = address & (FLASH_BYTES - 2);
     unsigned word = chip().cpu->pma->get_rom(even);
-    unsigned changed = address & 1 ? (word & 0x00FF) | byte << 8
-                                   : (word & 0xFF00) | byte;
+    unsigned changed =
+        address & 1 ? (word & 0x00FF) | byte << 8 : (word & 0xFF00) | byte;
     if (changed != word)
         chip().cpu->pma->put_rom(even, changed);
 }
@@ -126,8 +172,9 @@ void Nonvolatile::latch(unsigned address, uint8_t byte)
 void Nonvolatile::unlock(uint8_t value)
 {
     bool prompt = chip().now() - unlock_at_ <= UNLOCK_GAP_CYCLES;
-    unlocked_ = value == 0x55 ? 1
-              : value == 0xAA && unlocked_ == 1 && prompt ? 2 : 0;
+    unlocked_ = value == 0x55                               ? 1
+                : value == 0xAA && unlocked_ == 1 && prompt ? 2
+                                                            : 0;
     unlock_at_ = chip().now();
 }
 

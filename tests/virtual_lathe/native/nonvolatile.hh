@@ -7,9 +7,11 @@
 
 #include "chip.hh"
 
-namespace lathe {
+namespace lathe
+{
 
-class Nonvolatile {
+class Nonvolatile
+{
 public:
     void attach();
     uint8_t flash(unsigned address) const;
@@ -17,13 +19,16 @@ public:
     // A TBLWT instruction has put a byte into the holding latches.
     void latch(unsigned address, uint8_t byte);
 
-    uint8_t eeprom[EEPROM_BYTES];
-    uint32_t eeprom_writes = 0;     // bytes written since the start
-    uint32_t flash_erases = 0;      // blocks of 64 bytes
-    uint32_t flash_writes = 0;      // blocks of 32 bytes
-    uint32_t broken_unlocks = 0;    // WR set without a proper 55, AA before
+    uint8_t eeprom[EEPROM_BYTES] = {};
+    uint32_t eeprom_writes = 0;  // bytes written since the start
+    uint32_t flash_erases = 0;   // blocks of 64 bytes
+    uint32_t flash_writes = 0;   // blocks of 32 bytes
+    uint32_t broken_unlocks = 0; // WR set without a proper 55, AA before
 
-    uint8_t control() const { return control_; }
+    uint8_t control() const
+    {
+        return control_;
+    }
     void set_control(uint8_t value);
     void unlock(uint8_t value);
 
@@ -33,7 +38,7 @@ private:
     void power_lost();
 
     uint8_t control_ = 0;
-    uint8_t latches_[32];
+    uint8_t latches_[32] = {};
     int unlocked_ = 0;
     uint64_t unlock_at_ = 0;
     uint64_t busy_until_ = 0;

@@ -4,9 +4,11 @@
 
 #include "pins.hh"
 
-namespace lathe {
+namespace lathe
+{
 
-namespace {
+namespace
+{
 
 constexpr double SUPPLY_V = 5.0;
 constexpr double LEVEL_V = 2.5;
@@ -14,12 +16,14 @@ constexpr double WIRE_OHM = 10.0;
 constexpr double OPEN_OHM = 1e9;
 // Weak pull-up: 50 to 400 uA at 5 V by the data sheet; 25 kOhm is between.
 constexpr double PULL_UP_OHM = 25e3;
-constexpr unsigned RDPU = 0x80;     // PORTE bit 7: PORTD pull-ups on
+constexpr unsigned RDPU = 0x80; // PORTE bit 7: PORTD pull-ups on
 
-class Probe : public stimulus {
+class Probe : public stimulus
+{
 public:
-    Probe(const char *name, int pin)
-        : stimulus(name, 0.0, OPEN_OHM), pin_(pin) {}
+    Probe(const char *name, int pin) : stimulus(name, 0.0, OPEN_OHM), pin_(pin)
+    {
+    }
     void set_nodeVoltage(double volts) override
     {
         nodeVoltage = volts;
@@ -33,22 +37,42 @@ private:
 Probe *probes[PIN_COUNT];
 
 // PORTE with its bit 7, which gpsim does not have.
-class PortE : public sfr_register {
+class PortE : public sfr_register
+{
 public:
     PortE(Module *owner, Register *inner)
-        : sfr_register(owner, "porte_model", ""), inner_(inner) {}
-    unsigned get() override { return merge(inner_->get()); }
-    unsigned get_value() override { return merge(inner_->get_value()); }
-    void put(unsigned value) override { split(value); inner_->put(value); }
+        : sfr_register(owner, "porte_model", ""), inner_(inner)
+    {
+    }
+    unsigned get() override
+    {
+        return merge(inner_->get());
+    }
+    unsigned get_value() override
+    {
+        return merge(inner_->get_value());
+    }
+    void put(unsigned value) override
+    {
+        split(value);
+        inner_->put(value);
+    }
     void put_value(unsigned value) override
     {
         split(value);
         inner_->put_value(value);
     }
-    void reset(RESET_TYPE type) override { split(0); inner_->reset(type); }
+    void reset(RESET_TYPE type) override
+    {
+        split(0);
+        inner_->reset(type);
+    }
 
 private:
-    unsigned merge(unsigned value) const { return (value & 0x0F) | rdpu_; }
+    unsigned merge(unsigned value) const
+    {
+        return (value & 0x0F) | rdpu_;
+    }
     void split(unsigned value)
     {
         rdpu_ = value & RDPU;
@@ -110,7 +134,7 @@ void Pins::settle()
     while (levels_ != announced_) {
         uint64_t changed = levels_ ^ announced_;
         announced_ = levels_;
-        for (auto &listener : listeners_)
+        for (const auto &listener : listeners_)
             listener(changed_at_, announced_, changed);
     }
 }
@@ -152,7 +176,8 @@ void Pins::port_d_pull_ups(bool on)
 
 using lathe::pins;
 
-namespace {
+namespace
+{
 
 constexpr size_t PIN_LOG_MAX = 1 << 20;
 std::vector<vl_pin_change> pin_log;

@@ -8,24 +8,35 @@
 #include "chip.hh"
 #include "virtual_lathe.h"
 
-namespace lathe {
+namespace lathe
+{
 
 enum Port { A = 0, B = 8, C = 16, D = 24, E = 32 };
 constexpr int PIN_COUNT = 40;
 
-class Pins {
+class Pins
+{
 public:
     // Called after each instruction that changed pins: the cycle of the
     // change, all levels, and which pins changed.
     using Listener = std::function<void(uint64_t, uint64_t, uint64_t)>;
 
     void attach();
-    void listen(Listener listener) { listeners_.push_back(listener); }
+    void listen(Listener listener)
+    {
+        listeners_.push_back(listener);
+    }
     void drive(int pin, double volts, double ohms);
     void drive(int pin, vl_drive drive);
     bool exists(int pin) const;
-    int level(int pin) const { return levels_ >> pin & 1; }
-    uint64_t levels() const { return levels_; }
+    int level(int pin) const
+    {
+        return levels_ >> pin & 1;
+    }
+    uint64_t levels() const
+    {
+        return levels_;
+    }
     void note(int pin, bool level);
     void port_d_pull_ups(bool on);
 

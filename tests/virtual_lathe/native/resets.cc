@@ -6,9 +6,11 @@
 #include "chip.hh"
 #include "virtual_lathe.h"
 
-namespace lathe {
+namespace lathe
+{
 
-namespace {
+namespace
+{
 
 constexpr unsigned WDTCON_ADDRESS = 0xFD1;
 constexpr unsigned CONFIG2 = 0x300002;
@@ -22,11 +24,16 @@ uint8_t rcon_after(RESET_TYPE type, uint8_t before)
 {
     before &= BOR | POR | PD | TO | RI | SBOREN;
     switch (type) {
-    case POR_RESET: return SBOREN | RI | TO | PD;
-    case BOD_RESET: return ((before | RI | TO | PD) & ~BOR);
-    case WDT_RESET: return before & ~TO;
-    case SOFT_RESET: return before & ~RI;
-    default: return before;
+    case POR_RESET:
+        return SBOREN | RI | TO | PD;
+    case BOD_RESET:
+        return ((before | RI | TO | PD) & ~BOR);
+    case WDT_RESET:
+        return before & ~TO;
+    case SOFT_RESET:
+        return before & ~RI;
+    default:
+        return before;
     }
 }
 
@@ -34,10 +41,14 @@ uint8_t stkptr_after(RESET_TYPE type, uint8_t before)
 {
     switch (type) {
     case POR_RESET:
-    case BOD_RESET: return 0;
-    case STKOVF_RESET: return (before & STKUNF) | STKFUL;
-    case STKUNF_RESET: return (before & STKFUL) | STKUNF;
-    default: return before & (STKFUL | STKUNF);
+    case BOD_RESET:
+        return 0;
+    case STKOVF_RESET:
+        return (before & STKUNF) | STKFUL;
+    case STKUNF_RESET:
+        return (before & STKFUL) | STKUNF;
+    default:
+        return before & (STKFUL | STKUNF);
     }
 }
 
@@ -69,7 +80,7 @@ void Chip::finish_reset()
     nesting_.clear();
     stalled_until_ = 0;
     feed_watchdog();
-    for (auto &hook : on_reset_)
+    for (const auto &hook : on_reset_)
         hook(static_cast<RESET_TYPE>(resets.back().second));
 }
 
@@ -96,8 +107,8 @@ void Chip::feed_watchdog()
 
 void Chip::watch()
 {
-    bool on = watchdog_always_ ||
-              (cpu->registers[WDTCON_ADDRESS]->get_value() & 1);
+    bool on =
+        watchdog_always_ || (cpu->registers[WDTCON_ADDRESS]->get_value() & 1);
     if (!on)
         feed_watchdog();
     if (now() >= watchdog_deadline_)

@@ -4,7 +4,8 @@
 #include "usb_engine.hh"
 #include "usb_registers.hh"
 
-namespace lathe {
+namespace lathe
+{
 
 Handshake UsbEngine::begin(Packet &packet)
 {
@@ -16,8 +17,9 @@ Handshake UsbEngine::begin(Packet &packet)
     if (!(control & (in ? EPINEN : EPOUTEN)))
         return Handshake::None;
     if (packet.token == Token::Setup) {
-        bool ready = !(control & EPCONDIS) && fifo_.size() < STATUS_FIFO_DEPTH
-                     && descriptor(n, false).stat & UOWN;
+        bool ready = !(control & EPCONDIS) &&
+                     fifo_.size() < STATUS_FIFO_DEPTH &&
+                     descriptor(n, false).stat & UOWN;
         return ready ? Handshake::Ack : Handshake::None;
     }
     Descriptor d = descriptor(n, in);
@@ -50,12 +52,14 @@ void UsbEngine::complete(const Packet &packet)
     unsigned count = packet.data.size();
     if (!in) {
         // Table 17-3: a packet with the wrong toggle is acknowledged and lost.
-        bool wrong = d.stat & DTSEN && packet.toggle != (d.stat & DTS ? 1u : 0u);
+        bool wrong =
+            d.stat & DTSEN && packet.toggle != (d.stat & DTS ? 1u : 0u);
         if (wrong && packet.token == Token::Out)
             return;
         if (count > d.count) {
             mistake(text("descriptor 0x%03x: packet of %u bytes for a buffer "
-                         "of %u", d.at, count, d.count));
+                         "of %u",
+                         d.at, count, d.count));
             count = d.count;
         }
         if (buffer_fits(d, count)) {
@@ -65,8 +69,8 @@ void UsbEngine::complete(const Packet &packet)
     }
     if (packet.token == Token::Setup) {
         reg(UCON) |= PKTDIS;
-        set_address_open_ = count >= 2 && packet.data[0] == 0 &&
-                            packet.data[1] == 5;
+        set_address_open_ =
+            count >= 2 && packet.data[0] == 0 && packet.data[1] == 5;
     } else if (in && n == 0) {
         set_address_open_ = false;
     }

@@ -5,45 +5,75 @@
 #include "usb_engine.hh"
 #include "usb_registers.hh"
 
-namespace lathe {
+#include <algorithm>
+#include <iterator>
 
-namespace {
+namespace lathe
+{
+
+namespace
+{
 
 constexpr uint8_t USBIF = 0x20;
 // Section 17.2.3: TRNIF comes back at most 6 cycles after it was cleared.
 constexpr uint64_t TRNIF_AGAIN_CYCLES = 6;
 constexpr size_t MISTAKES_MAX = 200;
 
-class UsbRegister : public sfr_register {
+class UsbRegister : public sfr_register
+{
 public:
     UsbRegister(Module *owner, unsigned where)
         : sfr_register(owner, ("usb_" + std::to_string(where)).c_str(), "")
     {
         address = where;
     }
-    unsigned get() override { return usb_engine().read(address); }
-    unsigned get_value() override { return usb_engine().value(address); }
-    void put(unsigned v) override { usb_engine().write(address, v); }
-    void put_value(unsigned v) override { usb_engine().write(address, v); }
-    void reset(RESET_TYPE) override {}
+    unsigned get() override
+    {
+        return usb_engine().read(address);
+    }
+    unsigned get_value() override
+    {
+        return usb_engine().value(address);
+    }
+    void put(unsigned v) override
+    {
+        usb_engine().write(address, v);
+    }
+    void put_value(unsigned v) override
+    {
+        usb_engine().write(address, v);
+    }
+    void reset(RESET_TYPE) override
+    {
+    }
 };
 
-class UsbRam : public Register {
+class UsbRam : public Register
+{
 public:
     UsbRam(Module *owner, unsigned where)
         : Register(owner, ("usb_ram_" + std::to_string(where)).c_str())
     {
         address = where;
     }
-    unsigned get() override { return value.get(); }
+    unsigned get() override
+    {
+        return value.get();
+    }
     void put(unsigned v) override
     {
         unsigned before = value.get();
         value.put(v & 0xFF);
         usb_engine().ram_written(address, before, v & 0xFF);
     }
-    void put_value(unsigned v) override { value.put(v & 0xFF); }
-    REGISTER_TYPES isa() override { return FILE_REGISTER; }
+    void put_value(unsigned v) override
+    {
+        value.put(v & 0xFF);
+    }
+    REGISTER_TYPES isa() override
+    {
+        return FILE_REGISTER;
+    }
 };
 
 } // namespace
@@ -69,8 +99,7 @@ void UsbEngine::attach()
 
 void UsbEngine::reset()
 {
-    for (uint8_t &r : regs_)
-        r = 0;
+    std::fill(std::begin(regs_), std::end(regs_), 0);
     fifo_.clear();
     status_shown_ = set_address_open_ = reset_seen_ = false;
 }
@@ -80,7 +109,8 @@ void UsbEngine::mistake(const std::string &what)
     if (mistakes.size() < MISTAKES_MAX)
         mistakes.push_back(text("cycle %llu, address 0x%04x: ",
                                 (unsigned long long)chip().now(),
-                                chip().cpu->pc->value * 2) + what);
+                                chip().cpu->pc->value * 2) +
+                           what);
 }
 
 bool UsbEngine::connected() const
@@ -156,7 +186,7 @@ void UsbEngine::write_ucon(uint8_t value)
     uint8_t before = reg(UCON);
     uint8_t after = value & (PPBRST | USBEN | RESUME | SUSPND);
     after |= before & SE0;
-    after |= before & value & PKTDIS;       // firmware can only clear it
+    after |= before & value & PKTDIS; // firmware can only clear it
     reg(UCON) = after;
     if (!(before & USBEN) && after & USBEN) {
         if (reg(UCFG) & PPB)
@@ -177,7 +207,7 @@ void UsbEngine::write_ucon(uint8_t value)
 void UsbEngine::write_uir(uint8_t value)
 {
     uint8_t before = reg(UIR);
-    reg(UIR) = before & (value | UERRIF);   // flags are only cleared
+    reg(UIR) = before & (value | UERRIF); // flags are only cleared
     if (before & ~reg(UIR) & TRNIF)
         pop_status();
     if (before & ~reg(UIR) & URSTIF)
@@ -225,8 +255,8 @@ UsbEngine::Descriptor UsbEngine::descriptor(unsigned endpoint, bool in) const
 {
     unsigned at = RAM_FIRST + (endpoint * 2 + in) * DESCRIPTOR_BYTES;
     unsigned stat = ram(at);
-    return {stat, ram(at + 1) | (stat & 3) << 8,
-            ram(at + 2) | ram(at + 3) << 8, at};
+    return {stat, ram(at + 1) | (stat & 3) << 8, ram(at + 2) | ram(at + 3) << 8,
+            at};
 }
 
 bool UsbEngine::endpoint_on(unsigned endpoint, bool in) const
@@ -244,7 +274,8 @@ bool UsbEngine::buffer_fits(const Descriptor &d, unsigned count)
     if (d.address >= first_free && d.address + count <= RAM_LAST + 1)
         return true;
     mistake(text("descriptor 0x%03x: buffer 0x%03x + %u is outside "
-                 "0x%03x..0x7FF", d.at, d.address, count, first_free));
+                 "0x%03x..0x7FF",
+                 d.at, d.address, count, first_free));
     return false;
 }
 
@@ -282,12 +313,14 @@ void UsbEngine::ram_written(unsigned address, unsigned old_value,
     if (stat) {
         if (old_value & UOWN)
             mistake(text("descriptor 0x%03x written (0x%02x -> 0x%02x) while "
-                         "the engine owns it", address, old_value, value));
+                         "the engine owns it",
+                         address, old_value, value));
         if (value & UOWN) {
             Descriptor d = descriptor(slot / 2, slot & 1);
             if (buffer_fits(d, d.count) && d.count > PACKET_MAX)
                 mistake(text("descriptor 0x%03x: %u bytes are more than a "
-                             "packet", address, d.count));
+                             "packet",
+                             address, d.count));
         }
         return;
     }

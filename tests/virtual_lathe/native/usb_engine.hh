@@ -9,19 +9,21 @@
 
 #include "chip.hh"
 
-namespace lathe {
+namespace lathe
+{
 
 enum class Handshake { None = 0, Ack = 1, Nak = 2, Stall = 3 };
 enum class Token { Out = 1, In = 9, Setup = 13 };
 
 struct Packet {
-    Token token;
-    unsigned address, endpoint;
-    unsigned toggle;                // 0 or 1: DATA0 or DATA1
+    Token token = Token::In;
+    unsigned address = 0, endpoint = 0;
+    unsigned toggle = 0; // 0 or 1: DATA0 or DATA1
     std::vector<uint8_t> data;
 };
 
-class UsbEngine {
+class UsbEngine
+{
 public:
     void attach();
     // The device shows itself on the bus: module on, pull-up on.
@@ -35,20 +37,28 @@ public:
 
     void start_of_frame(unsigned number);
     void bus_reset(bool active);
-    void bus_idle();                // 3 ms without any packet
-    void bus_activity();            // resume signalling or a packet
-    void host_error() { flag_error(0x10); }    // BTOEF: bus turn-around
+    void bus_idle();     // 3 ms without any packet
+    void bus_activity(); // resume signalling or a packet
+    void host_error()
+    {
+        flag_error(0x10);
+    } // BTOEF: bus turn-around
 
     unsigned read(unsigned address);
     void write(unsigned address, unsigned value);
-    unsigned value(unsigned address) const { return regs_[address - UFRML]; }
+    unsigned value(unsigned address) const
+    {
+        return regs_[address - UFRML];
+    }
     void ram_written(unsigned address, unsigned old_value, unsigned value);
     void reset();
     void mistake(const std::string &text);
     std::vector<std::string> mistakes;
 
 private:
-    struct Descriptor { unsigned stat, count, address, at; };
+    struct Descriptor {
+        unsigned stat, count, address, at;
+    };
     Descriptor descriptor(unsigned endpoint, bool in) const;
     bool buffer_fits(const Descriptor &d, unsigned count);
     void write_back(const Descriptor &d, Token token, unsigned count);
@@ -62,9 +72,12 @@ private:
     bool owned(unsigned address, std::string &what) const;
     bool endpoint_on(unsigned endpoint, bool in) const;
 
-    uint8_t &reg(unsigned address) { return regs_[address - UFRML]; }
+    uint8_t &reg(unsigned address)
+    {
+        return regs_[address - UFRML];
+    }
     uint8_t regs_[UEP0 + 16 - UFRML] = {};
-    std::vector<uint8_t> fifo_;     // USTAT entries, oldest first
+    std::vector<uint8_t> fifo_; // USTAT entries, oldest first
     bool status_shown_ = false;
     bool set_address_open_ = false; // SET_ADDRESS without its status stage
     bool reset_seen_ = false;       // a bus reset nobody has handled yet

@@ -8,18 +8,20 @@
 
 #include <algorithm>
 
-namespace lathe {
+namespace lathe
+{
 
-namespace {
+namespace
+{
 
 constexpr int VBUS_PIN = B + 6;
 // Bits on the wire: sync 8, PID 8, address and CRC 16, end 3; data packets
 // carry 16 bits of CRC; a turn-around of the bus is about 8 bits.
 constexpr uint64_t TOKEN_BITS = 35, DATA_BITS = 35, HANDSHAKE_BITS = 19;
 constexpr uint64_t TURN_BITS = 8, GAP_BITS = 24, TIMEOUT_BITS = 18;
-constexpr uint64_t LONGEST_BITS = TOKEN_BITS + DATA_BITS + 64 * 8 +
-                                  HANDSHAKE_BITS + 3 * TURN_BITS + GAP_BITS;
-constexpr uint64_t BULK_PAUSE = 720;            // 60 us after a NAK
+constexpr uint64_t LONGEST_BITS =
+    TOKEN_BITS + DATA_BITS + 64 * 8 + HANDSHAKE_BITS + 3 * TURN_BITS + GAP_BITS;
+constexpr uint64_t BULK_PAUSE = 720; // 60 us after a NAK
 constexpr uint64_t NOTIFY_PAUSE = 16 * CYCLES_PER_MS;
 constexpr uint64_t IDLE_CYCLES = 3 * CYCLES_PER_MS;
 
@@ -135,8 +137,7 @@ void UsbHost::submit(const Packet &wanted)
         schedule(chip().now() + GAP_BITS);
 }
 
-void UsbHost::open(unsigned address, unsigned in, unsigned out,
-                   unsigned notify)
+void UsbHost::open(unsigned address, unsigned in, unsigned out, unsigned notify)
 {
     address_ = address;
     in_ = Pipe();
@@ -179,7 +180,10 @@ bool UsbHost::choose()
     } else if (out_due) {
         owner_ = Owner::Out;
         size_t count = std::min<size_t>(out_.packet, to_device.size());
-        current_ = {Token::Out, address_, out_.endpoint, out_.toggle,
+        current_ = {Token::Out,
+                    address_,
+                    out_.endpoint,
+                    out_.toggle,
                     {to_device.begin(), to_device.begin() + count}};
     } else {
         uint64_t next = frame_start_;
@@ -292,19 +296,31 @@ void vl_usb_attach(void)
     usb_host().attach();
 }
 
-void vl_usb_plug(int in) { usb_host().plug(in); }
+void vl_usb_plug(int in)
+{
+    usb_host().plug(in);
+}
 int vl_usb_connected(void)
 {
     return usb_host().plugged() && usb_engine().connected();
 }
-void vl_usb_reset(int active) { usb_host().drive_reset(active); }
-void vl_usb_suspend(int on) { usb_host().suspend(on); }
+void vl_usb_reset(int active)
+{
+    usb_host().drive_reset(active);
+}
+void vl_usb_suspend(int on)
+{
+    usb_host().suspend(on);
+}
 
 void vl_usb_submit(int token, unsigned address, unsigned endpoint,
                    unsigned toggle, const uint8_t *data, unsigned count)
 {
-    usb_host().submit({static_cast<lathe::Token>(token), address, endpoint,
-                       toggle, {data, data + count}});
+    usb_host().submit({static_cast<lathe::Token>(token),
+                       address,
+                       endpoint,
+                       toggle,
+                       {data, data + count}});
 }
 
 int vl_usb_result(uint8_t data[64], unsigned *count, unsigned *toggle)
@@ -323,7 +339,10 @@ void vl_usb_open(unsigned address, unsigned in, unsigned out, unsigned notify)
     usb_host().open(address, in, out, notify);
 }
 
-void vl_usb_close(void) { usb_host().close(); }
+void vl_usb_close(void)
+{
+    usb_host().close();
+}
 
 unsigned vl_usb_write(const uint8_t *data, unsigned count)
 {
@@ -334,7 +353,10 @@ unsigned vl_usb_write(const uint8_t *data, unsigned count)
     return taken;
 }
 
-unsigned vl_usb_unsent(void) { return usb_host().to_device.size(); }
+unsigned vl_usb_unsent(void)
+{
+    return usb_host().to_device.size();
+}
 
 unsigned vl_usb_read(uint8_t *data, unsigned room)
 {
@@ -345,14 +367,20 @@ unsigned vl_usb_read(uint8_t *data, unsigned room)
     return count;
 }
 
-int vl_usb_port_failed(void) { return usb_host().port_failed(); }
-void vl_usb_lose_handshakes(unsigned n) { usb_host().lose_handshakes = n; }
+int vl_usb_port_failed(void)
+{
+    return usb_host().port_failed();
+}
+void vl_usb_lose_handshakes(unsigned n)
+{
+    usb_host().lose_handshakes = n;
+}
 
 void vl_usb_counts(struct vl_usb_counts *counts)
 {
     const auto &c = usb_host().counts;
-    *counts = {c.frames, c.transactions, c.naks, c.stalls, c.timeouts,
-               c.bytes_in, c.bytes_out, c.wrong_toggles};
+    *counts = {c.frames,   c.transactions, c.naks,      c.stalls,
+               c.timeouts, c.bytes_in,     c.bytes_out, c.wrong_toggles};
 }
 
 int vl_usb_mistake(unsigned index, char *text, unsigned room)

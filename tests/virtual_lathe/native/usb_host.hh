@@ -9,7 +9,8 @@
 
 #include <deque>
 
-namespace lathe {
+namespace lathe
+{
 
 // Traffic of one direction of the CDC port.
 struct Pipe {
@@ -18,35 +19,45 @@ struct Pipe {
     unsigned toggle = 0;
     unsigned packet = 64;
     uint64_t next_try = 0;
-    uint64_t pause = 0;             // cycles to the next try after a NAK
+    uint64_t pause = 0; // cycles to the next try after a NAK
     bool stalled = false;
 };
 
-class UsbHost {
+class UsbHost
+{
 public:
     void attach();
     void plug(bool in);
-    bool plugged() const { return plugged_; }
+    bool plugged() const
+    {
+        return plugged_;
+    }
     void drive_reset(bool active);
     void suspend(bool on);
 
     // One transaction, as soon as the bus is free; stops the chip when over.
     void submit(const Packet &packet);
-    bool done() const { return done_; }
+    bool done() const
+    {
+        return done_;
+    }
     Handshake result = Handshake::None;
     Packet packet;
 
     void open(unsigned address, unsigned in, unsigned out, unsigned notify);
     void close();
     std::deque<uint8_t> to_device, from_device, notifications;
-    size_t receive_limit = 4096;    // bytes unread before polling stops
+    size_t receive_limit = 4096; // bytes unread before polling stops
 
-    unsigned lose_handshakes = 0;   // fault: the next n are lost on the bus
+    unsigned lose_handshakes = 0; // fault: the next n are lost on the bus
     struct Counts {
         uint64_t frames, transactions, naks, stalls, timeouts, bytes_in,
             bytes_out, wrong_toggles;
     } counts = {};
-    bool port_failed() const { return in_.stalled || out_.stalled; }
+    bool port_failed() const
+    {
+        return in_.stalled || out_.stalled;
+    }
 
 private:
     void frame();

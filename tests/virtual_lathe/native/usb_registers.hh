@@ -9,24 +9,35 @@
 #include <cstdarg>
 #include <cstdio>
 
-namespace lathe {
+namespace lathe
+{
 
 enum Ucon : uint8_t {
-    SUSPND = 0x02, RESUME = 0x04, USBEN = 0x08, PKTDIS = 0x10, SE0 = 0x20,
+    SUSPND = 0x02,
+    RESUME = 0x04,
+    USBEN = 0x08,
+    PKTDIS = 0x10,
+    SE0 = 0x20,
     PPBRST = 0x40
 };
 enum Uir : uint8_t {
-    URSTIF = 0x01, UERRIF = 0x02, ACTVIF = 0x04, TRNIF = 0x08, IDLEIF = 0x10,
-    STALLIF = 0x20, SOFIF = 0x40
+    URSTIF = 0x01,
+    UERRIF = 0x02,
+    ACTVIF = 0x04,
+    TRNIF = 0x08,
+    IDLEIF = 0x10,
+    STALLIF = 0x20,
+    SOFIF = 0x40
 };
 enum Ucfg : uint8_t { PPB = 0x03, FSEN = 0x04, UTRDIS = 0x08, UPUEN = 0x10 };
 enum Uep : uint8_t {
-    EPSTALL = 0x01, EPINEN = 0x02, EPOUTEN = 0x04, EPCONDIS = 0x08,
+    EPSTALL = 0x01,
+    EPINEN = 0x02,
+    EPOUTEN = 0x04,
+    EPCONDIS = 0x08,
     EPHSHK = 0x10
 };
-enum Bdstat : uint8_t {
-    BSTALL = 0x04, DTSEN = 0x08, DTS = 0x40, UOWN = 0x80
-};
+enum Bdstat : uint8_t { BSTALL = 0x04, DTSEN = 0x08, DTS = 0x40, UOWN = 0x80 };
 constexpr unsigned RAM_FIRST = 0x400, RAM_LAST = 0x7FF;
 constexpr unsigned DESCRIPTOR_BYTES = 4, ENDPOINTS = 16;
 constexpr unsigned PACKET_MAX = 64;

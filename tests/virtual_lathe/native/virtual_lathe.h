@@ -22,11 +22,11 @@ extern "C" {
 /* ---- Chip: chip.cc, chip_api.cc ---------------------------------------- */
 
 enum vl_stop {
-    VL_STOP_CYCLE = 0,      /* the wanted cycle was reached */
-    VL_STOP_ADDRESS = 1,    /* the next instruction has a break on it */
-    VL_STOP_EVENT = 2,      /* something waited for has happened */
-    VL_STOP_LOST = 3,       /* the program counter left the program memory */
-    VL_STOP_HALT = 4        /* gpsim itself asked to halt */
+    VL_STOP_CYCLE = 0,   /* the wanted cycle was reached */
+    VL_STOP_ADDRESS = 1, /* the next instruction has a break on it */
+    VL_STOP_EVENT = 2,   /* something waited for has happened */
+    VL_STOP_LOST = 3,    /* the program counter left the program memory */
+    VL_STOP_HALT = 4     /* gpsim itself asked to halt */
 };
 
 /* Loads firmware: a .hex file (taken as PIC18F4550) or a .cod file. */
@@ -48,9 +48,14 @@ void vl_write(unsigned address, unsigned value);
 void vl_set_break(unsigned address, int enabled);
 
 enum vl_reset {
-    VL_RESET_POWER_ON = 0, VL_RESET_BROWN_OUT = 1, VL_RESET_WATCHDOG = 2,
-    VL_RESET_MCLR = 3, VL_RESET_STACK_FULL = 4, VL_RESET_STACK_EMPTY = 5,
-    VL_RESET_SOFTWARE = 6, VL_RESET_OTHER = 7
+    VL_RESET_POWER_ON = 0,
+    VL_RESET_BROWN_OUT = 1,
+    VL_RESET_WATCHDOG = 2,
+    VL_RESET_MCLR = 3,
+    VL_RESET_STACK_FULL = 4,
+    VL_RESET_STACK_EMPTY = 5,
+    VL_RESET_SOFTWARE = 6,
+    VL_RESET_OTHER = 7
 };
 /* Injects a reset of one of the first four kinds between two instructions.
  * RAM keeps its contents, as on the chip after a short interruption; use
@@ -89,16 +94,19 @@ void vl_clear_statistics(void);
 /* Records every firmware write to data memory first..last in a log of at
  * most 4096 entries; returns the number of entries so far. */
 int vl_watch_writes(unsigned first, unsigned last);
-struct vl_ram_write { uint64_t cycle; uint32_t address, value, pc; };
+struct vl_ram_write {
+    uint64_t cycle;
+    uint32_t address, value, pc;
+};
 int vl_ram_writes(struct vl_ram_write *entries, int room);
 
 /* ---- Pins: pins.cc ------------------------------------------------------ */
 
 /* Pins are numbered port * 8 + bit, port 0 = A .. 4 = E: RB4 is 12. */
 enum vl_drive {
-    VL_LOW = 0,     /* connected to ground */
-    VL_HIGH = 1,    /* connected to +5 V */
-    VL_OPEN = 2     /* not connected: the chip's pull-up decides, if it is on */
+    VL_LOW = 0,  /* connected to ground */
+    VL_HIGH = 1, /* connected to +5 V */
+    VL_OPEN = 2  /* not connected: the chip's pull-up decides, if it is on */
 };
 int vl_pin_drive(int pin, int drive);
 /* Connects the pin to `volts` through `ohms` (analogue inputs). */
@@ -108,7 +116,10 @@ int vl_pin_level(int pin);
 uint64_t vl_pin_levels(void);
 /* Logs changes of the pins in `mask` from now on, forgetting older ones. */
 void vl_pin_log(uint64_t mask);
-struct vl_pin_change { uint64_t cycle; uint64_t levels; };
+struct vl_pin_change {
+    uint64_t cycle;
+    uint64_t levels;
+};
 /* Copies the oldest entries and removes them; returns how many. */
 int vl_pin_changes(struct vl_pin_change *entries, int room);
 
@@ -142,8 +153,7 @@ int vl_usb_result(uint8_t data[64], unsigned *count, unsigned *toggle);
 
 /* The serial port: from vl_usb_open() on bulk OUT is sent as long as there is
  * something and bulk IN and the notification endpoint are polled. */
-void vl_usb_open(unsigned address, unsigned in, unsigned out,
-                 unsigned notify);
+void vl_usb_open(unsigned address, unsigned in, unsigned out, unsigned notify);
 void vl_usb_close(void);
 /* Both return how many bytes were taken or given; a queue holds 4096. */
 unsigned vl_usb_write(const uint8_t *data, unsigned count);
@@ -154,8 +164,8 @@ int vl_usb_port_failed(void);
 /* Fault injection: the handshakes of the next n transactions are lost. */
 void vl_usb_lose_handshakes(unsigned n);
 struct vl_usb_counts {
-    uint64_t frames, transactions, naks, stalls, timeouts, bytes_in,
-        bytes_out, wrong_toggles;
+    uint64_t frames, transactions, naks, stalls, timeouts, bytes_in, bytes_out,
+        wrong_toggles;
 };
 void vl_usb_counts(struct vl_usb_counts *counts);
 /* Text of the n-th mistake of the firmware; -1 when there are fewer. */
@@ -169,28 +179,28 @@ enum vl_axis { VL_X = 0, VL_Z = 1 };
  * the limit switch opens, negative towards axis and chuck. */
 void vl_machine_attach(void);
 struct vl_axis_setup {
-    int32_t slide;              /* where the slide stands, full steps */
-    int32_t backlash;           /* dead steps of the screw */
-    int32_t slack;              /* 0..backlash: how much is taken up now;
+    int32_t slide;         /* where the slide stands, full steps */
+    int32_t backlash;      /* dead steps of the screw */
+    int32_t slack;         /* 0..backlash: how much is taken up now;
                                    backlash = pushed in + direction last */
-    int32_t switch_travel;      /* closes beyond this, opens at 0 */
-    int32_t switch_broken;      /* 1: its wire is broken */
-    int32_t stop_plus;          /* hard ends of the slide, full steps */
+    int32_t switch_travel; /* closes beyond this, opens at 0 */
+    int32_t switch_broken; /* 1: its wire is broken */
+    int32_t stop_plus;     /* hard ends of the slide, full steps */
     int32_t stop_minus;
-    double pull_in;             /* full steps/s the motor starts at */
-    double pull_out;            /* full steps/s it reaches at most */
-    double acceleration;        /* full steps/s2 between the two */
+    double pull_in;      /* full steps/s the motor starts at */
+    double pull_out;     /* full steps/s it reaches at most */
+    double acceleration; /* full steps/s2 between the two */
 };
 int vl_axis_setup(int axis, const struct vl_axis_setup *setup);
 struct vl_axis_state {
-    int64_t slide, slack, rotor, commanded;     /* half steps */
-    uint64_t steps;             /* changes of the coil pattern */
-    uint64_t lost_steps;        /* changes the rotor did not follow */
+    int64_t slide, slack, rotor, commanded; /* half steps */
+    uint64_t steps;                         /* changes of the coil pattern */
+    uint64_t lost_steps; /* changes the rotor did not follow */
     uint64_t illegal_patterns;
-    uint64_t jumps;             /* changes by more than a full step */
-    uint64_t end_stops;         /* attempts to go past a hard end */
-    double fastest;             /* full steps/s */
-    int32_t pressed;            /* the switch, before bounce and noise */
+    uint64_t jumps;     /* changes by more than a full step */
+    uint64_t end_stops; /* attempts to go past a hard end */
+    double fastest;     /* full steps/s */
+    int32_t pressed;    /* the switch, before bounce and noise */
 };
 int vl_axis_read(int axis, struct vl_axis_state *state);
 int vl_switch_broken(int axis, int broken, int switch_travel);
@@ -201,15 +211,23 @@ void vl_switch_quality(unsigned bounce_us, unsigned noise_hz, unsigned seed);
 
 /* Every movement of a slide, and everything that went wrong.  Both functions
  * hand out the oldest entries and forget them; they return how many. */
-struct vl_move { uint64_t cycle; int64_t x, z; };       /* half steps */
+struct vl_move {
+    uint64_t cycle;
+    int64_t x, z;
+}; /* half steps */
 int vl_moves(struct vl_move *entries, int room);
 enum vl_fault_kind {
-    VL_FAULT_PATTERN = 0,       /* value: the coil pattern */
-    VL_FAULT_JUMP = 1,          /* value: half steps */
-    VL_FAULT_LOST_STEP = 2,     /* value: full steps/s asked for */
-    VL_FAULT_END_STOP = 3       /* value: full steps */
+    VL_FAULT_PATTERN = 0,   /* value: the coil pattern */
+    VL_FAULT_JUMP = 1,      /* value: half steps */
+    VL_FAULT_LOST_STEP = 2, /* value: full steps/s asked for */
+    VL_FAULT_END_STOP = 3   /* value: full steps */
 };
-struct vl_fault { uint64_t cycle; int32_t axis; int32_t kind; int64_t value; };
+struct vl_fault {
+    uint64_t cycle;
+    int32_t axis;
+    int32_t kind;
+    int64_t value;
+};
 int vl_faults(struct vl_fault *entries, int room);
 
 #ifdef __cplusplus

@@ -55,9 +55,9 @@ def build_parser() -> argparse.ArgumentParser:
     add = parser.add_argument
     add("--firmware", type=Path, default=DEFAULT_FIRMWARE, help=".hex or .cod for the 18F4550")
     add("--part", type=Path, help="part file to compare the workpiece with")
-    add("--stock-diameter", type=float, default=25.4, metavar="MM")
-    add("--stock-length", type=float, default=50.8, metavar="MM", help="from part zero to chuck")
-    add("--stock-allowance", type=float, default=0.0, metavar="MM", help="raw metal beyond z = 0")
+    add("--stock-diameter", type=float, metavar="MM", help="default: of the part, else 25.4")
+    add("--stock-length", type=float, metavar="MM", help="part zero to chuck; else 50.8")
+    add("--stock-allowance", type=float, metavar="MM", help="raw metal beyond z = 0")
     add("--nose-radius", type=_nose_radius, default=0.0, metavar="MM")
     for axis in "xz":
         add(f"--backlash-{axis}", type=int, default=0, metavar="STEPS")

@@ -22,6 +22,8 @@ ESTOP_PIN = "RD7"
 PRESS_S = 0.1
 SLICE_S = 0.02
 STEP_NM = 7112
+# The bar when nobody says anything: 1.000 inch thick, 2.000 inch free, in steps.
+BAR_RADIUS, BAR_LENGTH = 1786, 7143
 TRAVEL = {AxisName.X: 3575, AxisName.Z: 16072}
 DEFAULT_FIRMWARE = Path(__file__).resolve().parents[2] / "build" / "firmware" / "tornillo.hex"
 
@@ -39,9 +41,9 @@ class Options:
 
     firmware: Path = DEFAULT_FIRMWARE
     part: Path | None = None
-    stock_diameter_mm: float = 25.4
-    stock_length_mm: float = 50.8
-    stock_allowance_mm: float = 0.0
+    stock_diameter_mm: float | None = None
+    stock_length_mm: float | None = None
+    stock_allowance_mm: float | None = None
     backlash_x: int = 0
     backlash_z: int = 0
     switch_travel_x: int = 0
@@ -84,14 +86,14 @@ class VirtualLathe:
         self.machine.set_switch_quality(
             self.options.bounce_us, self.options.noise_hz, self.options.seed
         )
+        self.wanted: WantedPart | None = (
+            read_part(self.options.part) if self.options.part is not None else None
+        )
         self.workpiece = Workpiece(
             self._stock(),
             self.options.part_zero_x,
             self.options.part_zero_z,
             self.options.cut_rate_limit,
-        )
-        self.wanted: WantedPart | None = (
-            read_part(self.options.part) if self.options.part is not None else None
         )
         self._faults: list[Fault] = []
         self._furthest: dict[AxisName, tuple[float, float]] = {}
@@ -119,13 +121,18 @@ class VirtualLathe:
         )
 
     def _stock(self) -> Stock:
-        def steps(mm: float) -> int:
-            return round(mm * 1e6 / STEP_NM)
+        """The raw bar: as the options say, else as the part file says, else 1 by 2 inch."""
+        part = self.wanted
+        given = self.options
 
+        def steps(mm: float | None, other: int) -> int:
+            return other if mm is None else round(mm * 1e6 / STEP_NM)
+
+        half = given.stock_diameter_mm
         return Stock(
-            steps(self.options.stock_diameter_mm / 2),
-            steps(self.options.stock_length_mm),
-            steps(self.options.stock_allowance_mm),
+            steps(None if half is None else half / 2, part.stock_radius if part else BAR_RADIUS),
+            steps(given.stock_length_mm, part.length if part else BAR_LENGTH),
+            steps(given.stock_allowance_mm, part.front if part else 0),
         )
 
     # -- time -------------------------------------------------------------------------------------

@@ -1,20 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the USB and frame tests share: the firmware on a simulated chip with a USB host.
 
-gpsim allows one chip per process, so each test runs in a process of its own: see
-:func:`on_a_new_chip`. Times are simulated seconds, cycles are instruction cycles.
+Times are simulated seconds, cycles are instruction cycles. That the firmware makes no mistake with
+the USB engine and never restarts is checked at the end of every test.
 """
 
 from __future__ import annotations
 
-import functools
-import multiprocessing
-import traceback
-from collections.abc import Callable
-from multiprocessing.connection import Connection
 from pathlib import Path
 
-import pytest
+from executed.record import RECORDER
+from simulated.processes import at_the_end, in_any_case
 from tornillo.frames import Frame, decode, encode
 from virtual_lathe.chip import Chip, NonVolatile
 from virtual_lathe.usb_host import Handshake, Result, Token, UsbHost, UsbStall
@@ -26,37 +22,6 @@ ANSWER_TIMEOUT_S = 1.0
 GET_DESCRIPTOR = 6
 GET_CONFIGURATION = 8
 DEVICE_DESCRIPTOR = 0x0100
-
-
-def on_a_new_chip(test: Callable[..., None]) -> Callable[..., None]:
-    """Decorate a test so that it runs in a process of its own and reports from there."""
-
-    @functools.wraps(test)
-    def run(**arguments: object) -> None:
-        context = multiprocessing.get_context("fork")
-        receiver, sender = context.Pipe(duplex=False)
-        child = context.Process(target=_report, args=(test, arguments, sender))
-        child.start()
-        sender.close()
-        try:
-            failure = receiver.recv()
-        except EOFError:
-            failure = "the simulator ended without a report"
-        child.join()
-        if failure:
-            pytest.fail(failure, pytrace=False)
-
-    return run
-
-
-def _report(test: Callable[..., None], arguments: dict[str, object], sender: Connection) -> None:
-    try:
-        test(**arguments)
-    except BaseException:
-        sender.send(traceback.format_exc())
-    else:
-        sender.send("")
-    sender.close()
 
 
 class UsbBench:
@@ -75,6 +40,8 @@ class UsbBench:
         self.chip.restore(NonVolatile(kept.flash, eeprom))
         self.host = UsbHost(self.chip)
         self.toggles = {Token.IN: 0, Token.OUT: 0}
+        in_any_case(RECORDER.add)
+        at_the_end(self.assert_no_mistakes)
 
     def enumerate(self) -> UsbBench:
         """Put the cable in if it is out, and configure the device as Linux does."""

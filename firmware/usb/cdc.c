@@ -33,8 +33,8 @@
  * programs wait for them before they open the port. */
 #define SERIAL_STATE 0x20
 
-/* bmRequestType of a class request with a data stage to the host; the other
- * direction is 0x21. Also the first byte of a notification. */
+/* bmRequestType; the second is also the first byte of a notification. */
+#define TO_INTERFACE 0x21
 #define FROM_INTERFACE 0xA1
 
 #define LINE_STATE_DTR 0x01
@@ -195,7 +195,7 @@ uint8_t cdc_request(void)
         usb_left = LINE_CODING_LENGTH;
         return 1;
     }
-    if (usb_ep0_out[7]) {
+    if (type != TO_INTERFACE || usb_ep0_out[7]) {
         return 0;
     }
     if (request == SET_LINE_CODING) {

@@ -82,6 +82,9 @@ REFUSED = {
     "line coding of interface 1": (0xA1, GET_LINE_CODING, 0, 1, 7),
     "line coding of 6 bytes": (0x21, SET_LINE_CODING, 0, 0, 6),
     "line coding of 263 bytes": (0x21, SET_LINE_CODING, 0, 0, 263),
+    "line state of the device": (0x20, SET_CONTROL_LINE_STATE, 0, 0, 0),
+    "line state to the host": (0xA2, SET_CONTROL_LINE_STATE, 0, 0, 0),
+    "line coding of an endpoint": (0xA2, GET_LINE_CODING, 0, 0, 7),
     "unknown class request": (0x21, 0x24, 0, 0, 0),
     "vendor read": (0xC0, 1, 0, 0, 4),
     "vendor write": (0x40, 1, 0, 0, 4),
@@ -183,6 +186,22 @@ def test_the_new_address_holds_after_the_status_stage_and_not_before() -> None:
     assert bench.host.transaction(Token.IN, 0, address=0).handshake == Handshake.NONE
     bench.host.address = 9
     assert bench.configuration() == 0
+
+
+@on_a_new_chip
+def test_address_0_leads_back_to_the_default_state() -> None:
+    bench = UsbBench().enumerate()
+    bench.host.control(0x00, SET_CONFIGURATION, 0)
+    bench.host.control(0x00, SET_ADDRESS, 0)
+    bench.host.wait(0.002)
+    bench.host.address = 0
+    assert bench.chip.peek(UADDR) == 0
+    assert bench.refuses(0x00, SET_CONFIGURATION, 1)
+    bench.host.control(0x00, SET_ADDRESS, 11)
+    bench.host.wait(0.002)
+    bench.host.address = 11
+    bench.host.control(0x00, SET_CONFIGURATION, 1)
+    assert bench.configuration() == 1
 
 
 @on_a_new_chip

@@ -87,11 +87,11 @@ def test_a_button_held_down_while_power_comes_is_no_press() -> None:
     bench = Bench()
     bench.chip.drive(PINS["run"], Drive.LOW)
     bench.run(0.1)
-    assert bench.state is State.IDLE
+    assert bench.is_in(State.IDLE)
     bench.chip.drive(PINS["run"], Drive.OPEN)
     bench.run(0.01)
     bench.press("run")
-    assert bench.state is State.HOMING
+    assert bench.is_in(State.HOMING)
 
 
 @on_a_new_chip

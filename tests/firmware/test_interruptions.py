@@ -41,15 +41,15 @@ def running_lathe(**options: Any) -> Bench:
 def test_hold_freezes_between_two_steps_and_run_goes_on_without_losing_one() -> None:
     bench = running_lathe(backlash_x=7, backlash_z=12)
     holds = 0
-    while bench.state is State.RUNNING:
+    while bench.is_in(State.RUNNING):
         bench.run(0.0371)
-        if bench.state is State.RUNNING:
+        if bench.is_in(State.RUNNING):
             holds += 1
             if holds % 2:
                 bench.press("hold", 0.006)
             else:
                 bench.host.hold()
-            assert bench.state is State.HOLD
+            assert bench.is_in(State.HOLD)
             assert_nothing_moves(bench, 0.03)
             if holds % 2:
                 bench.press("run", 0.006)

@@ -82,6 +82,10 @@ class Bench:
         """The machine's state."""
         return State(self.chip.variable("machine_state"))
 
+    def is_in(self, state: State) -> bool:
+        """Whether the machine is in a state now."""
+        return self.state is state
+
     @property
     def alarm(self) -> tuple[Alarm, int]:
         """The alarm and its detail."""

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The part store: what stays, what replaces what, and what the link may ask of it."""
+
+from __future__ import annotations
+
+import struct
+from functools import partial
+
+import pytest
+from simulated import little_pin
+from simulated.bench import Bench
+from simulated.processes import branch, on_a_new_chip
+from tornillo.errors import ChipError
+from tornillo.frames import crc16
+from tornillo.link import Link
+from tornillo.protocol import Command, ErrorCode, State
+from virtual_lathe.chip import NonVolatile
+
+SEVEN = [f"part-{number}" for number in range(1, 8)]
+
+
+def names(bench: Bench) -> list[str]:
+    """Names of the stored parts, sorted."""
+    return sorted(part.name for part in bench.host.parts())
+
+
+def selected(bench: Bench) -> str:
+    """Name of the part that RUN cuts."""
+    (chosen,) = [part.name for part in bench.host.parts() if part.selected]
+    return chosen
+
+
+def full_store() -> Bench:
+    """Return a lathe with seven parts."""
+    bench = little_pin.lathe_with_pin()
+    bench.host.delete(bench.host.find("little-pin").slot)
+    for number, name in enumerate(SEVEN):
+        bench.host.upload(little_pin.image(name, depth_of_cut=10 + number))
+    return bench
+
+
+@on_a_new_chip
+def test_a_part_is_read_back_as_it_was_sent_and_survives_power_cycles() -> None:
+    bench = little_pin.lathe_with_pin()
+    for seed in (1, 2):
+        bench.power_cycle(seed)
+        part = bench.host.find("little-pin")
+        assert bench.host.read(part.slot) == little_pin.image()
+        assert (part.operations, part.selected, part.crc) == (2, True, crc16(little_pin.image()))
+
+
+@on_a_new_chip
+def test_the_longest_part_can_be_stored_and_read_back() -> None:
+    bench = little_pin.lathe_with_pin()
+    operations = little_pin.OPERATIONS[:1] * 20 + little_pin.OPERATIONS[1:] * 28
+    image = little_pin.image("long", operations)
+    slot = bench.host.upload(image)
+    assert bench.host.read(slot) == image
+    assert bench.host.part(slot) is not None
+    bench.home()
+    bench.host.run(slot)
+    bench.wait_for(State.IDLE)
+    assert bench.status().finished
+    little_pin.assert_cut_exactly(bench)
+
+
+@on_a_new_chip
+def test_seven_names_fit_and_the_eighth_is_refused_but_each_can_be_replaced() -> None:
+    bench = full_store()
+    host = bench.host
+    assert names(bench) == SEVEN
+    refused = bench.refusal(lambda: host.upload(little_pin.image("part-8")))
+    assert refused is ErrorCode.STORE_FULL
+    assert names(bench) == SEVEN
+    for name in SEVEN:
+        image = little_pin.image(name, depth_of_cut=25)
+        assert host.read(host.upload(image)) == image
+        assert names(bench) == SEVEN
+        assert selected(bench) == name
+    host.delete(host.find("part-3").slot)
+    host.upload(little_pin.image("part-8"))
+    assert "part-8" in names(bench)
+    bench.power_cycle()
+    assert names(bench) == sorted({*SEVEN, "part-8"} - {"part-3"})
+
+
+@on_a_new_chip
+def test_the_selected_part_is_remembered_and_falls_back_to_the_newest() -> None:
+    bench = full_store()
+    host = bench.host
+    assert selected(bench) == "part-7"
+    host.select(host.find("part-2").slot)
+    bench.power_cycle()
+    assert selected(bench) == "part-2"
+    bench.host.delete(bench.host.find("part-2").slot)
+    assert selected(bench) == "part-7"
+    bench.host.delete(bench.host.find("part-7").slot)
+    assert selected(bench) == "part-6"
+    assert bench.status().slot == bench.host.find("part-6").slot
+
+
+@on_a_new_chip
+def test_deleting_and_selecting_what_is_not_there_is_refused() -> None:
+    bench = little_pin.lathe_with_pin()
+    empty = (bench.host.find("little-pin").slot + 1) % 8
+    for slot in (empty, 8, 255):
+        assert bench.refusal(partial(bench.host.delete, slot)) is ErrorCode.NO_PART
+        assert bench.refusal(partial(bench.host.select, slot)) is ErrorCode.NO_PART
+    assert names(bench) == ["little-pin"]
+
+
+@on_a_new_chip
+def test_run_with_a_slot_cuts_that_part_and_not_the_selected_one() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    first = bench.host.find("little-pin").slot
+    bench.host.upload(little_pin.image("selected", little_pin.OPERATIONS[:1]))
+    bench.host.run(first)
+    assert bench.status().slot == first
+    bench.wait_for(State.IDLE)
+    little_pin.assert_cut_exactly(bench)
+
+
+@on_a_new_chip
+def test_generations_that_wrap_still_tell_the_newer_part() -> None:
+    bench = little_pin.lathe_with_pin()
+    slot = bench.host.find("little-pin").slot
+    memory = bench.chip.save()
+    header = struct.pack("<HHHH", 0x4E54, 0xFFFF, len(little_pin.image()), 0)
+    header = header[:6] + struct.pack("<H", crc16(little_pin.image()))
+    flash = bytearray(memory.flash)
+    at = 0x6000 + 1024 * slot
+    flash[at : at + 10] = header + struct.pack("<H", crc16(header))
+    bench.chip.restore(NonVolatile(bytes(flash), memory.eeprom[:0xE0] + b"\xff" * 32))
+    bench.host.upload(little_pin.image("newer"))
+    assert bench.host.find("newer").generation == 0
+    bench.chip.restore(
+        NonVolatile(bench.chip.save().flash, bench.chip.save().eeprom[:0xE0] + b"\xff" * 32)
+    )
+    assert selected(bench) == "newer"
+
+
+# -- uploads out of order --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("command", "payload", "answer"),
+    [
+        (Command.UPLOAD_DATA, struct.pack("<H", 0) + bytes(32), ErrorCode.NO_UPLOAD),
+        (Command.UPLOAD_COMMIT, b"", ErrorCode.NO_UPLOAD),
+        (Command.UPLOAD_BEGIN, struct.pack("<HH", 55, 0), ErrorCode.OUT_OF_RANGE),
+        (Command.UPLOAD_BEGIN, struct.pack("<HH", 961, 0), ErrorCode.OUT_OF_RANGE),
+        (Command.UPLOAD_BEGIN, struct.pack("<H", 72), ErrorCode.BAD_LENGTH),
+        (Command.PART_READ, struct.pack("<BH", 7, 1), ErrorCode.BAD_OFFSET),
+        (Command.PART_READ, struct.pack("<BH", 7, 960), ErrorCode.BAD_OFFSET),
+        (Command.PART_READ, struct.pack("<BH", 1, 0), ErrorCode.NO_PART),
+        (Command.PART_INFO, b"\x08", ErrorCode.OUT_OF_RANGE),
+        (Command.STATUS, b"\x00", ErrorCode.BAD_LENGTH),
+    ],
+)
+@on_a_new_chip
+def test_a_request_out_of_place_is_refused_and_changes_nothing(
+    command: Command, payload: bytes, answer: ErrorCode
+) -> None:
+    bench = little_pin.lathe_with_pin()
+    before = bench.chip.nonvolatile_counts
+    link = Link(bench.lathe.port)
+    link.request(Command.HELLO)
+    assert bench.refusal(lambda: link.request(command, payload)) is answer
+    assert bench.chip.nonvolatile_counts == before
+
+
+@on_a_new_chip
+def test_pieces_of_an_upload_must_come_whole_and_in_order() -> None:
+    bench = little_pin.lathe_with_pin()
+    image = little_pin.image("other")
+    link = Link(bench.lathe.port)
+    link.request(Command.HELLO)
+
+    def data(offset: int, length: int = 32) -> ErrorCode:
+        piece = struct.pack("<H", offset) + image[offset : offset + length]
+        return bench.refusal(lambda: link.request(Command.UPLOAD_DATA, piece))
+
+    def commit() -> ErrorCode:
+        return bench.refusal(lambda: link.request(Command.UPLOAD_COMMIT))
+
+    link.request(Command.UPLOAD_BEGIN, struct.pack("<HH", len(image), crc16(image)))
+    assert data(32) is ErrorCode.BAD_OFFSET
+    assert data(0, 31) is ErrorCode.BAD_OFFSET
+    assert commit() is ErrorCode.BAD_LENGTH
+    assert data(0) is ErrorCode.OK
+    assert data(0) is ErrorCode.BAD_OFFSET
+    assert data(32) is ErrorCode.OK
+    assert commit() is ErrorCode.BAD_LENGTH
+    assert data(64) is ErrorCode.OK
+    assert commit() is ErrorCode.OK
+    assert commit() is ErrorCode.NO_UPLOAD
+    assert names(bench) == ["little-pin", "other"]
+
+
+@on_a_new_chip
+def test_an_image_that_is_not_the_announced_one_is_not_stored() -> None:
+    bench = little_pin.lathe_with_pin()
+    image = little_pin.image("other")
+    link = Link(bench.lathe.port)
+    link.request(Command.HELLO)
+    link.request(Command.UPLOAD_BEGIN, struct.pack("<HH", len(image), crc16(image) ^ 1))
+    for offset in range(0, len(image), 32):
+        link.request(Command.UPLOAD_DATA, struct.pack("<H", offset) + image[offset : offset + 32])
+    with pytest.raises(ChipError) as refused:
+        link.request(Command.UPLOAD_COMMIT)
+    assert refused.value.code is ErrorCode.CRC_MISMATCH
+    assert names(bench) == ["little-pin"]
+
+
+# -- without a computer ----------------------------------------------------------------------------
+
+
+def stored_by_usb() -> NonVolatile:
+    """Store the little pin over USB and switch off."""
+    return little_pin.lathe_with_pin().chip.save()
+
+
+def cut_by_buttons(memory: NonVolatile) -> None:
+    """Home and run by the button on a lathe whose cable is never plugged in."""
+    bench = Bench(memory, usb=False, backlash_x=23, backlash_z=31, **little_pin.OPTIONS)
+    bench.lathe.wanted = little_pin.wanted()
+    bench.run(0.1)
+    bench.press("run")
+    assert bench.is_in(State.HOMING)
+    bench.wait_for(State.IDLE)
+    bench.press("run")
+    assert bench.is_in(State.RUNNING)
+    bench.wait_for(State.IDLE)
+    little_pin.assert_cut_exactly(bench)
+    assert bench.lathe.host.counts["transactions"] == 0
+
+
+def test_a_stored_part_is_cut_by_the_button_with_usb_never_attached() -> None:
+    memory = branch(stored_by_usb)
+    branch(partial(cut_by_buttons, memory))

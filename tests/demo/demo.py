@@ -115,7 +115,7 @@ def show(report: dict[str, Any]) -> None:
     console.print(printed)
     console.print("wanted: the whole step of the screw (7.112 um) nearest to the part file")
     console.print(
-        f"lost steps {report['lost_steps']}, deepest gouge {report['gouge_max_steps']} steps, "
+        f"lost steps {report['lost_steps']}, deepest gouge {report['gouge_max_steps']:g} steps, "
         f"crashes {len(report['crashes'])}; {report['virtual_seconds']:.0f} s on the lathe, "
         f"{report['wall_seconds']:.0f} s on the clock"
     )

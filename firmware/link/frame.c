@@ -145,10 +145,26 @@ static uint8_t receive(void)
     return complete;
 }
 
+/* Forgets an unfinished frame: the first zero of whoever comes next would end
+ * it, and a request that nobody waits for any more would be carried out. */
+static void forget(void)
+{
+    cdc_closed = 0;
+    started = 0;
+    until_zero = 0;
+    packet_at = 0;
+    if (cdc_received()) {
+        cdc_release();
+    }
+}
+
 void frame_poll(void)
 {
     uint8_t seq;
 
+    if (cdc_closed) {
+        forget();
+    }
     if (!cdc_send_ready() || !receive()) {
         return;
     }

@@ -42,6 +42,8 @@
 #define SERIAL_STATE_LENGTH 10
 #define SERIAL_STATE_DCD_DSR 0x03
 
+volatile uint8_t cdc_closed;
+
 /* 115200 baud, 1 stop bit, no parity, 8 bits. Stored and reported, otherwise of
  * no effect: there is no wire with a baud rate behind this port. */
 void cdc_line_coding_default(void)
@@ -65,6 +67,7 @@ void cdc_reset(void)
     usb_sending = 0;
     usb_notify = 0;
     usb_line_state = 0;
+    cdc_closed = 1;
 }
 
 void cdc_configure(void)
@@ -165,6 +168,7 @@ static void set_line_state(void)
     if (usb_line_state & LINE_STATE_DTR) {
         return;
     }
+    cdc_closed = 1;
     usb_sending = 0;
     if (usb_halted & EP2_IN_BIT) {
         return;

@@ -84,6 +84,11 @@ uint8_t cdc_received(void);
 /* Done with cdc_packet. Only after cdc_received() was not 0. */
 void cdc_release(void);
 
+/* Not 0 = the port was closed, the bus reset or the cable pulled since the
+ * main loop last cleared it: what has arrived before belongs to somebody who
+ * is gone. */
+extern volatile uint8_t cdc_closed;
+
 /* ---- Sending (main loop) ------------------------------------------------ */
 
 /* The next packet to the host; belongs to the main loop while

@@ -12,7 +12,8 @@ from simulated.ports import TroubledPort
 from simulated.processes import branch, on_a_new_chip
 from tornillo import Lathe
 from tornillo.errors import LinkError
-from tornillo.protocol import State
+from tornillo.frames import Frame, encode
+from tornillo.protocol import Command, State
 
 OLD = little_pin.image()
 NEW = little_pin.image(depth_of_cut=17)
@@ -173,3 +174,21 @@ def test_a_request_whose_answer_is_lost_is_not_executed_again() -> None:
 def stored_by(host: Lathe) -> bytes:
     """Upload the old part over a troubled port and read it back."""
     return host.read(host.upload(OLD))
+
+
+@pytest.mark.parametrize("end", ["cable", "port"])
+@on_a_new_chip
+def test_a_request_cut_off_before_its_last_byte_is_never_carried_out(end: str) -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    bench.lathe.port.write(encode(Frame(200, Command.RUN, b"\xff"))[:-1])
+    bench.run(0.01)
+    if end == "cable":
+        bench.unplug()
+    else:
+        bench.lathe.host.close_port()
+        bench.run(0.01)
+    bench.connect()
+    bench.run(0.05)
+    assert bench.is_in(State.IDLE)
+    bench.host.run()
+    assert bench.is_in(State.RUNNING)

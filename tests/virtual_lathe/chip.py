@@ -258,13 +258,6 @@ class Chip:
         self._native.vl_nonvolatile_counts(ctypes.byref(counts))
         return {name: int(getattr(counts, name)) for name, *_ in counts._fields_}
 
-    @property
-    def config_words(self) -> bytes:
-        """The 14 configuration bytes from 0x300000."""
-        words = (ctypes.c_uint8 * 14)()
-        self._native.vl_config_read(words)
-        return bytes(words)
-
     # -- pins -----------------------------------------------------------------------------------
 
     def drive(self, pin: str, how: Drive) -> None:

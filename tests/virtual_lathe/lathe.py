@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .chip import CYCLES_PER_SECOND, Chip, Drive, InterruptCost, NonVolatile, Stop
+from .configuration import wrong_words
 from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine
 from .part import WantedPart, read_part
 from .serial_port import SerialPort
@@ -262,9 +263,14 @@ class VirtualLathe:
             Check("slides inside the travel", tuple(outside)),
             Check("no crash", tuple(str(crash) for crash in self.workpiece.crashes)),
             Check("USB used by the book", tuple(self.host.mistakes)),
+            Check("configuration words suit the board", tuple(self._wrong_words())),
             Check("step stream never dry", tuple(self._dry_at)),
             Check("step interrupt inside its window", () if kept else tuple(slow)),
         ]
+
+    def _wrong_words(self) -> list[str]:
+        hex_file = self.options.firmware
+        return wrong_words(hex_file) if hex_file.suffix.lower() == ".hex" else []
 
     def broken_checks(self) -> list[Check]:
         """Return the expectations that did not hold."""

@@ -141,7 +141,6 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_flash_write": (None, [c_uint, _BYTES, c_uint]),
     "vl_eeprom_read": (None, [_BYTES]),
     "vl_eeprom_write": (None, [_BYTES]),
-    "vl_config_read": (None, [_BYTES]),
     "vl_interrupts": (None, [c_int, POINTER(InterruptCostC)]),
     "vl_stack_depth_max": (c_uint, []),
     "vl_executed": (None, [_BYTES]),

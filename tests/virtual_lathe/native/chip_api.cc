@@ -187,14 +187,6 @@ void vl_nonvolatile_counts(struct vl_nonvolatile_counts *counts)
                nonvolatile().flash_writes, nonvolatile().broken_unlocks};
 }
 
-void vl_config_read(uint8_t bytes[14])
-{
-    for (unsigned i = 0; i < 14; i++) {
-        unsigned word = chip().cpu->get_config_word(0x300000 + (i & ~1u));
-        bytes[i] = i & 1 ? word >> 8 : word & 0xFF;
-    }
-}
-
 void vl_interrupts(int priority, struct vl_interrupt_cost *cost)
 {
     const lathe::InterruptCost &from = chip().interrupts[priority ? 1 : 0];

@@ -34,6 +34,9 @@ private:
     int pin_;
 };
 
+// Pins that the 40-pin chip has: no RA7, RC3 (VUSB), RE3 (MCLR) and above.
+constexpr unsigned PORT_PINS[] = {0x7F, 0xFF, 0xF7, 0xFF, 0x07};
+
 Probe *probes[PIN_COUNT];
 
 // PORTE with its bit 7, which gpsim does not have.
@@ -96,7 +99,7 @@ void Pins::attach()
         Register *port = chip().cpu->registers[PORTA + pin / 8];
         auto *module = dynamic_cast<PortModule *>(port);
         IOPIN *iopin = module ? module->getPin(pin % 8) : nullptr;
-        if (!iopin)
+        if (!iopin || !(PORT_PINS[pin / 8] >> pin % 8 & 1))
             continue;
         char name[] = {'R', char('A' + pin / 8), char('0' + pin % 8), 0};
         auto *node = new Stimulus_Node((std::string("node_") + name).c_str());

@@ -54,8 +54,13 @@ void UsbEngine::complete(const Packet &packet)
         // Table 17-3: a packet with the wrong toggle is acknowledged and lost.
         bool wrong =
             d.stat & DTSEN && packet.toggle != (d.stat & DTS ? 1u : 0u);
-        if (wrong && packet.token == Token::Out)
+        if (wrong && packet.token == Token::Out) {
+            if (packet.fresh)
+                mistake(text("descriptor 0x%03x drops a new packet: its "
+                             "data toggle is wrong",
+                             d.at));
             return;
+        }
         if (count > d.count) {
             mistake(text("descriptor 0x%03x: packet of %u bytes for a buffer "
                          "of %u",

@@ -76,7 +76,21 @@ public:
     }
 };
 
+UsbRam *dual_port[RAM_LAST - RAM_FIRST + 1];
+
 } // namespace
+
+unsigned ram(unsigned address)
+{
+    bool inside = address >= RAM_FIRST && address <= RAM_LAST;
+    return inside ? dual_port[address - RAM_FIRST]->value.get() : 0;
+}
+
+void set_ram(unsigned address, unsigned value)
+{
+    if (address >= RAM_FIRST && address <= RAM_LAST)
+        dual_port[address - RAM_FIRST]->value.put(value & 0xFF);
+}
 
 UsbEngine &usb_engine()
 {
@@ -93,6 +107,7 @@ void UsbEngine::attach()
         auto *byte = new UsbRam(chip().cpu, address);
         byte->value.put(registers[address]->get_value());
         registers[address] = byte;
+        dual_port[address - RAM_FIRST] = byte;
     }
     chip().add_on_reset([this](RESET_TYPE) { reset(); });
 }

@@ -19,7 +19,8 @@ struct Packet {
     Token token = Token::In;
     unsigned address = 0, endpoint = 0;
     unsigned toggle = 0; // 0 or 1: DATA0 or DATA1
-    std::vector<uint8_t> data;
+    std::vector<uint8_t> data = {};
+    bool fresh = false; // never sent before: the device must not drop it
 };
 
 class UsbEngine

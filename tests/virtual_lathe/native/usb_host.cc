@@ -158,6 +158,15 @@ void UsbHost::close()
     to_device.clear();
 }
 
+Packet UsbHost::in_token(const Pipe &pipe) const
+{
+    Packet packet;
+    packet.token = Token::In;
+    packet.address = address_;
+    packet.endpoint = pipe.endpoint;
+    return packet;
+}
+
 // Picks the next transaction that is due; otherwise says when to look again.
 bool UsbHost::choose()
 {
@@ -173,10 +182,10 @@ bool UsbHost::choose()
     bool out_due = out && out_.next_try <= now;
     if (notify_.on && !notify_.stalled && notify_.next_try <= now) {
         owner_ = Owner::Notify;
-        current_ = {Token::In, address_, notify_.endpoint, 0, {}};
+        current_ = in_token(notify_);
     } else if (in_due && (!out_due || !last_was_in_)) {
         owner_ = Owner::In;
-        current_ = {Token::In, address_, in_.endpoint, 0, {}};
+        current_ = in_token(in_);
     } else if (out_due) {
         owner_ = Owner::Out;
         size_t count = std::min<size_t>(out_.packet, to_device.size());
@@ -184,7 +193,8 @@ bool UsbHost::choose()
                     address_,
                     out_.endpoint,
                     out_.toggle,
-                    {to_device.begin(), to_device.begin() + count}};
+                    {to_device.begin(), to_device.begin() + count},
+                    !out_.repeated};
     } else {
         uint64_t next = frame_start_;
         if (in)
@@ -260,12 +270,14 @@ void UsbHost::finish_pipe(Pipe &pipe)
     if (answer_ == Handshake::Stall) {
         pipe.stalled = true;
     } else if (answer_ != Handshake::Ack) {
+        pipe.repeated = pipe.repeated || answer_ == Handshake::None;
         pipe.next_try = chip().now() + pipe.pause;
     } else if (&pipe == &out_) {
         to_device.erase(to_device.begin(),
                         to_device.begin() + current_.data.size());
         counts.bytes_out += current_.data.size();
         pipe.toggle ^= 1;
+        pipe.repeated = false;
     } else if (take_in(pipe, &pipe == &in_ ? from_device : notifications)) {
         counts.bytes_in += current_.data.size();
     }

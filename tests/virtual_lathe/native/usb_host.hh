@@ -21,6 +21,7 @@ struct Pipe {
     uint64_t next_try = 0;
     uint64_t pause = 0; // cycles to the next try after a NAK
     bool stalled = false;
+    bool repeated = false; // the packet to send may have arrived already
 };
 
 class UsbHost
@@ -63,6 +64,7 @@ private:
     void frame();
     void step();
     void schedule(uint64_t cycle);
+    Packet in_token(const Pipe &pipe) const;
     bool choose();
     void transfer();
     void finish();

@@ -44,15 +44,10 @@ constexpr unsigned PACKET_MAX = 64;
 // Section 17.2.4: USTAT is a window on a FIFO of four entries.
 constexpr size_t STATUS_FIFO_DEPTH = 4;
 
-inline unsigned ram(unsigned address)
-{
-    return chip().cpu->registers[address]->value.get();
-}
-
-inline void set_ram(unsigned address, unsigned value)
-{
-    chip().cpu->registers[address]->value.put(value & 0xFF);
-}
+// The dual-port RAM as the engine sees it, whatever watches its addresses.
+// Reading outside it gives 0, writing does nothing.
+unsigned ram(unsigned address);
+void set_ram(unsigned address, unsigned value);
 
 inline std::string text(const char *format, ...)
     __attribute__((format(printf, 1, 2)));

@@ -65,8 +65,7 @@ void vl_fill_ram(unsigned seed);
 /* Resets seen so far: returns how many; fills up to `room` entries. */
 int vl_resets(uint64_t *cycles, int *kinds, int room);
 
-/* Non-volatile memory: 32768 bytes of flash, 256 bytes of EEPROM, 14 bytes
- * of configuration words (0x300000..0x30000D). */
+/* Non-volatile memory: 32768 bytes of flash, 256 bytes of EEPROM. */
 void vl_flash_read(unsigned address, uint8_t *bytes, unsigned count);
 void vl_flash_write(unsigned address, const uint8_t *bytes, unsigned count);
 void vl_eeprom_read(uint8_t bytes[256]);
@@ -77,7 +76,6 @@ struct vl_nonvolatile_counts {
     uint32_t eeprom_writes, flash_erases, flash_writes, broken_unlocks;
 };
 void vl_nonvolatile_counts(struct vl_nonvolatile_counts *counts);
-void vl_config_read(uint8_t bytes[14]);
 
 /* Instruments.  `priority` is 0 for low, 1 for high; times run from the
  * acceptance of the interrupt to the end of its retfie and leave out

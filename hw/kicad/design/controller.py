@@ -112,9 +112,9 @@ def _usb(sheet: Sheet) -> None:
 def _vbus_sense(sheet: Sheet) -> None:
     sheet.frame((196, 136), (312, 186))
     sheet.text("VBUS sense: RB6 is held low while no USB supply is there", (198, 140), 1.5)
-    resistor(sheet, "R5", "22k", (212, 154))
+    resistor(sheet, "R5", "2k2", (212, 154))
     supply(sheet, "VBUS", "R5.1")
-    resistor(sheet, "R6", "10k", (212, 165))
+    resistor(sheet, "R6", "1k", (212, 165))
     sheet.wire("R5.2", "R6.1")
     ground(sheet, "GND", "R6.2")
     sheet.place("Q1", "Transistor_BJT:2N3904", "2N3904", (228, 160), footprint=fp.TO92)

@@ -105,7 +105,7 @@ def _regulator(sheet: Sheet) -> None:
 
 
 def _isolated(sheet: Sheet) -> None:
-    sheet.frame((86, 80), (224, 124))
+    sheet.frame((86, 80), (224, 128))
     sheet.text("Logic supply across the isolation gap; power path to USB", (88, 84), 1.5)
     sheet.place("U4", "tornillo:DCDC_5V_5V_SIP7", "TMV0505S", (116, 98), footprint=fp.DCDC,
                 ref_at=(-6, -5.2, "left"), value_at=(-6, 5.4, "left"))
@@ -132,8 +132,13 @@ def _isolated(sheet: Sheet) -> None:
                 footprint=fp.SOT23, ref_at=(-4, 4.4, "left"), value_at=(0.5, 4.4, "left"))
     sheet.wire("Q3.1", (168, 96))
     sheet.wire("Q3.3", (162, 110), (162, 114))
-    sheet.power("VBUS", (162, 114), 180)
+    sheet.wire((162, 114), (145, 114))
+    sheet.power("VBUS", (145, 114))
     sheet.wire("Q3.2", (186, 110), (186, 96))
+    diode(sheet, "D8", "1N5819", (174, 119), cathode="right", footprint=fp.DIODE_1A,
+          symbol="Device:D_Schottky")
+    sheet.wire("D8.2", (162, 119), (162, 114))
+    sheet.wire("D8.1", (186, 119), (186, 110))
     sheet.wire("D7.1", (196, 96))
     sheet.power("+5V", (196, 96))
 

@@ -5,6 +5,7 @@
 // flash write or asleep.
 
 #include "chip.hh"
+#include "gpsim_versions.hh"
 #include "nonvolatile.hh"
 #include "virtual_lathe.h"
 
@@ -170,7 +171,7 @@ void Chip::enter_interrupt(int stack_before, uint64_t start)
     // clears the enable bit of this priority instead, so that high interrupts
     // low; leave_interrupt() sets it again.
     INTCON_16 &intcon = cpu->intcon;
-    intcon.in_interrupt = false;
+    allow_nesting(intcon, 0);
     bool priorities = cpu->rcon.value.get() & RCON::IPEN;
     unsigned bit = high || !priorities ? INTCON_16::GIEH : INTCON_16::GIEL;
     intcon.value.put(intcon.value.get() & ~bit);

@@ -4,6 +4,7 @@
 // counts its watchdog in another clock, so both are done here.
 
 #include "chip.hh"
+#include "gpsim_versions.hh"
 #include "virtual_lathe.h"
 
 namespace lathe
@@ -74,7 +75,7 @@ void Chip::finish_reset()
     resetting_ = false;
     cpu->rcon.value.put(rcon_next_);
     cpu->registers[STKPTR]->put_value(stkptr_next_);
-    cpu->intcon.in_interrupt = false;
+    allow_nesting(cpu->intcon, 0);
     cpu->mCurrentPhase = cpu->mExecute1Cycle;
     cpu->mExecute1Cycle->setNextPhase(cpu->mExecute1Cycle);
     nesting_.clear();
@@ -92,7 +93,7 @@ void Chip::reset(RESET_TYPE type)
 
 void Chip::start_watchdog()
 {
-    cpu->wdt.initialize(false);
+    switch_off(cpu->wdt);
     unsigned config = cpu->get_config_word(CONFIG2) >> 8;
     watchdog_always_ = config & 1;
     watchdog_period_ = WATCHDOG_CYCLES << (config >> 1 & 0xF);

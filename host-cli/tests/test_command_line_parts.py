@@ -149,7 +149,8 @@ def test_select_and_delete_take_names_and_slots(
     assert chip.slots == {}
     result = tornillo("delete", "test-bar")
     assert result.exit_code == 1
-    assert "Try: see `tornillo parts`" in result.stderr
+    assert "no part called 'test-bar' is stored in the lathe" in result.stderr
+    assert "Try: stored are: none" in result.stderr
 
 
 @pytest.mark.parametrize("suffix", [".svg", ".png"])

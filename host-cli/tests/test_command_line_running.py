@@ -83,7 +83,7 @@ def test_run_without_a_name_starts_the_selected_part(
 def test_run_of_an_unknown_part_is_refused(tornillo: Tornillo, loaded: ScriptedChip) -> None:
     result = tornillo("run", "other")
     assert result.exit_code == 1
-    assert "no part in that slot, or none is selected" in result.stderr
+    assert "no part called 'other' is stored in the lathe" in result.stderr
     assert Command.RUN not in loaded.executed
 
 

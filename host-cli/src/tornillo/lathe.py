@@ -17,7 +17,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-from tornillo.errors import ChipError, LinkError
+from tornillo.errors import ChipError, LinkError, TornilloError
 from tornillo.frames import crc16
 from tornillo.link import Link, Transport
 from tornillo.machine import Machine
@@ -173,7 +173,7 @@ class Lathe:
     def find(self, name: str) -> StoredPart:
         """The newest stored part called `name`, or the part in the slot of that number.
 
-        Raises ChipError with `ErrorCode.NO_PART` when there is none.
+        Raises TornilloError, naming the parts there are, when there is none.
         """
         parts = self.parts()
         named = [part for part in parts if part.name == name]
@@ -182,7 +182,11 @@ class Lathe:
         if found is None and numbered:
             found = numbered[0]
         if found is None:
-            raise ChipError(Command.PART_INFO, ErrorCode.NO_PART)
+            stored = ", ".join(part.name for part in parts) or "none"
+            raise TornilloError(
+                f"no part called {name!r} is stored in the lathe",
+                f"stored are: {stored}; upload it with `tornillo upload`, or see `tornillo parts`",
+            )
         return found
 
     def read(self, slot: int) -> bytes:

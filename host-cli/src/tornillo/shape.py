@@ -132,9 +132,8 @@ def _cylinder_passes(
 def _face_passes(
     image: PartImage, shape: Shape, position: int, operation: FaceRecord
 ) -> Iterator[Pass]:
-    """Strokes along X."""
-    header = image.header
+    """Strokes along X; a face has no finishing pass."""
     front = shape.sections[0].z_front if shape.sections else operation.z
-    for finishing, z in levels(front, operation.z, header.depth_of_cut, header.finish_allowance):
+    for finishing, z in levels(front, operation.z, image.header.depth_of_cut, 0):
         outside = shape.largest(front, z)
         yield Pass(position, finishing, (z, outside), (z, operation.x_inner))

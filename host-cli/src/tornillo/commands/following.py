@@ -58,16 +58,18 @@ def follow_run(lathe: Lathe) -> None:
 def _until_standing(lathe: Lathe, show: Display) -> Status:
     """Poll until the machine neither cuts nor holds."""
     while (status := lathe.status()).state in (State.RUNNING, State.HOLD):
-        show(status.permille, _describe(status))
+        show(status.permille, describe(status))
         time.sleep(POLL_S)
     if status.finished:
         show(PERMILLE_DONE, "finished")
     return status
 
 
-def _describe(status: Status) -> str:
+def describe(status: Status) -> str:
     """What is being cut."""
-    text = f"operation {status.operation} of {status.operations}"
+    text = "on the way to the part"
+    if status.operation:
+        text = f"operation {status.operation} of {status.operations}"
     if status.passes:
         text += f", pass {status.pass_number} of {status.passes}"
     return f"{text}, held" if status.state is State.HOLD else text
@@ -83,7 +85,7 @@ def _held(lathe: Lathe) -> TornilloError:
         return TornilloError("interrupted; the lathe was not cutting", "see `tornillo status`")
     status = lathe.status()
     return TornilloError(
-        f"held by Ctrl-C at {_describe(status).removesuffix(', held')}; nothing is lost",
+        f"held by Ctrl-C at {describe(status).removesuffix(', held')}; nothing is lost",
         "go on with `tornillo resume --follow`, or give up with `tornillo stop`",
     )
 

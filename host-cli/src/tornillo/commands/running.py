@@ -6,7 +6,7 @@ import dataclasses
 import click
 
 from tornillo.commands.connection import connected, json_option, print_json
-from tornillo.commands.following import follow_homing, follow_run
+from tornillo.commands.following import describe, follow_homing, follow_run
 from tornillo.lathe import Lathe
 from tornillo.protocol import Axis, State, StatusFlag
 from tornillo.protocol_texts import ALARM_TEXTS
@@ -173,10 +173,7 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
     if now.slot is not None:
         rows["part"] = f"{names.get(now.slot, '?')} (slot {now.slot})"
     if now.state in (State.RUNNING, State.HOLD):
-        rows["progress"] = (
-            f"{now.permille / 10:.1f} %, operation {now.operation} of {now.operations}, "
-            f"pass {now.pass_number} of {now.passes}"
-        )
+        rows["progress"] = f"{now.permille / 10:.1f} %, {describe(now)}"
     pressed = [
         text
         for flag, text in (

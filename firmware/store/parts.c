@@ -186,11 +186,12 @@ void parts_init(void)
 static uint8_t free_slots(void)
 {
     uint8_t count = 0;
-    uint8_t slot;
+    uint8_t slot = PART_SLOTS;
 
-    for (slot = 0; slot < PART_SLOTS; slot++) {
+    while (slot != 0) {
+        slot--;
         if (!parts_present(slot)) {
-            parts_upload_slot = slot;
+            parts_upload_slot = slot; /* the first one in the end */
             count++;
         }
     }

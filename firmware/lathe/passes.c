@@ -124,14 +124,14 @@ static int16_t largest_radius(int16_t z_start, int16_t z_end)
     uint16_t at = PART_IMAGE_HEADER_SIZE;
 
     while (at != record) {
-        int16_t low;
+        int16_t end;
 
         part_record = at;
         part_read_operation();
         at += part_size;
-        low = part_low;
-        if (low > z_end && low < z_start) {
-            int16_t radius = radius_behind(low);
+        end = part_low;
+        if (end > z_end && end < z_start) {
+            int16_t radius = radius_behind(end);
 
             if (radius > largest) {
                 largest = radius;

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The wanted shape, read from the part file without any code of the host program or firmware.
 
-Lengths become steps by exact arithmetic, rounded to the nearest step. The surface is a radius for
-every step of Z; at a shoulder the step belongs to the smaller radius.
+Lengths become steps by exact arithmetic. What can be cut is rounded to the nearest step; what the
+drawing says stays exact beside it (``Nominal``), so that an error includes the rounding. The surface
+is a radius for every step of Z; at a shoulder the step belongs to the smaller radius.
 """
 
 from __future__ import annotations
@@ -18,11 +19,20 @@ NM = {"mm": 1_000_000, "inch": 25_400_000}
 
 
 @dataclass(frozen=True)
+class Nominal:
+    """What the drawing says, in steps: radius of a cylinder, and its length or a face's z."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
 class Face:
     """Flat end at ``z``, cut from outside down to radius ``inner`` (steps)."""
 
     z: int
     inner: int
+    nominal: Nominal
 
 
 @dataclass(frozen=True)
@@ -32,6 +42,7 @@ class Cylinder:
     start: int
     end: int
     radius: int
+    nominal: Nominal
 
 
 @dataclass(frozen=True)
@@ -56,8 +67,12 @@ class WantedPart:
         return wanted
 
 
+def _exact(value: Any, unit_nm: int, step_nm: int, half: bool = False) -> Fraction:
+    return Fraction(value) * unit_nm / step_nm / (2 if half else 1)
+
+
 def _steps(value: Any, unit_nm: int, step_nm: int, half: bool = False) -> int:
-    exact = Fraction(value) * unit_nm / step_nm / (2 if half else 1)
+    exact = _exact(value, unit_nm, step_nm, half)
     return (2 * exact.numerator + exact.denominator) // (2 * exact.denominator)
 
 
@@ -76,11 +91,16 @@ def read_part(path: Path | str, step_x_nm: int = 7112, step_z_nm: int = 7112) ->
     for entry in table.get("operation", []):
         if entry["type"] == "face":
             inner = _steps(entry.get("diameter", 0), unit, step_x_nm, half=True)
-            operations.append(Face(_steps(entry["z"], unit, step_z_nm), inner))
+            nominal = Nominal(0.0, float(_exact(entry["z"], unit, step_z_nm)))
+            operations.append(Face(_steps(entry["z"], unit, step_z_nm), inner, nominal))
         elif entry["type"] == "cylinder":
             start, end = (_steps(z, unit, step_z_nm) for z in entry["z"])
             radius = _steps(entry["diameter"], unit, step_x_nm, half=True)
-            operations.append(Cylinder(start, end, radius))
+            nominal = Nominal(
+                float(_exact(entry["diameter"], unit, step_x_nm, half=True)),
+                float(_exact(entry["z"][0] - entry["z"][1], unit, step_z_nm)),
+            )
+            operations.append(Cylinder(start, end, radius, nominal))
         else:
             raise ValueError(f"operation {entry['type']!r} is not modelled here")
     return WantedPart(

@@ -175,7 +175,7 @@ class Workpiece:
             name = f"{kind} {numbers[kind]}"
             if isinstance(operation, Face):
                 z = self.face_position(operation.inner)
-                found.append(_dimension(f"{name} z", operation.z, z, step_z_nm / 1e6))
+                found.append(_dimension(f"{name} z", operation.nominal.length, z, step_z_nm / 1e6))
             else:
                 found += self._cylinder(name, operation, surface, step_x_nm, step_z_nm)
         return found
@@ -194,7 +194,9 @@ class Workpiece:
         if not own:
             return []
         radius = max((self.radius_at(z) for z in own), key=lambda r: abs(r - cylinder.radius))
-        measured = _dimension(f"{name} diameter", cylinder.radius, radius, 2 * step_x_nm / 1e6)
+        measured = _dimension(
+            f"{name} diameter", cylinder.nominal.radius, radius, 2 * step_x_nm / 1e6
+        )
         end = cylinder.end
         if surface.get(end - 1, 0) > cylinder.radius:
             half_way = (self.stock.radius + cylinder.radius) / 2
@@ -203,8 +205,8 @@ class Workpiece:
             while shoulder > self.first_z and self.radius_at(shoulder - 1) < wall:
                 shoulder -= 1
             end = shoulder
-        wanted_length = cylinder.start - cylinder.end
-        length = _dimension(f"{name} length", wanted_length, cylinder.start - end, step_z_nm / 1e6)
+        cut = cylinder.start - end
+        length = _dimension(f"{name} length", cylinder.nominal.length, cut, step_z_nm / 1e6)
         return [measured, length]
 
 
@@ -213,5 +215,5 @@ def _dimension(name: str, wanted: float, cut: float, mm: float) -> dict[str, Any
         "name": name,
         "wanted_mm": round(wanted * mm, 6),
         "cut_mm": round(cut * mm, 6),
-        "error_steps": cut - wanted,
+        "error_steps": round(cut - wanted, 3),
     }

@@ -39,7 +39,7 @@ virtual-lathe: firmware virtual-lathe-library ## run a virtual lathe; options in
 
 .PHONY: test
 test: firmware virtual-lathe-library ## all tests: host, firmware on the simulated chip, end to end
-	@$(PYTHON) -m pytest $(PYTEST_ARGS)
+	@$(PYTHON) -m pytest --cov=tornillo --cov-branch --cov-report=term $(PYTEST_ARGS)
 
 .PHONY: lint
 lint: firmware ## cppcheck, clang-format, ruff, mypy, generated files up to date
@@ -52,6 +52,8 @@ bench: firmware virtual-lathe-library ## measure, write build/bench/bench.json a
 .PHONY: docs
 docs: | $(SETUP_STAMP) ## refresh the generated parts of docs/
 	@$(PYTHON) firmware/link/generate_protocol.py
+	@$(PYTHON) docs/generate_tables.py
+	@$(VENV)/bin/tornillo draw host-cli/examples/test-bar.toml -o docs/images/test-bar.png
 
 .PHONY: clean
 clean: ## remove build/ and the Python environment; the compiler cache stays

@@ -1,4 +1,6 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+#
 # Builds SDCC with its PIC16 port from Debian's source package, into a cache
 # outside the checkout, and prints nothing but what it is doing.
 #

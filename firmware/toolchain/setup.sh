@@ -16,7 +16,7 @@ requirements=host-cli/requirements-dev.txt
 sdcc=$cache/sdcc-4.2.0
 
 packages=(gcc g++ make pkg-config python3 python3-venv git ca-certificates
-    gputils gpsim gpsim-dev libglib2.0-dev cppcheck clang-format
+    gputils gpsim gpsim-dev libglib2.0-dev cppcheck clang-format shellcheck
     bison flex texinfo libboost-graph-dev zlib1g-dev dpkg-dev xz-utils)
 
 say() { printf 'setup: %s\n' "$*"; }

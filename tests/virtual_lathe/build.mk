@@ -7,7 +7,8 @@ VIRTUAL_LATHE_SO := build/virtual_lathe/libvirtual_lathe.so
 VIRTUAL_LATHE_SRC := $(wildcard $(VIRTUAL_LATHE_DIR)/*.cc)
 VIRTUAL_LATHE_OBJ := $(VIRTUAL_LATHE_SRC:$(VIRTUAL_LATHE_DIR)/%.cc=build/virtual_lathe/%.o)
 # gpsim's headers are system headers: our warnings do not apply to them.
-VIRTUAL_LATHE_CXXFLAGS := -std=c++17 -O2 -fPIC -Wall -Wextra -Werror \
+# Not ":=": pkg-config may only be there once setup has run.
+VIRTUAL_LATHE_CXXFLAGS = -std=c++17 -O2 -fPIC -Wall -Wextra -Werror \
 	$(subst -I,-isystem ,$(shell pkg-config --cflags glib-2.0 2>/dev/null))
 
 .PHONY: virtual-lathe-library

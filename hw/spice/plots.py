@@ -150,7 +150,7 @@ def figures(rows: list[tuple[str, float, Result]], clamps: list[tuple[float, Res
     for name, rate, result in rows:
         v = result.values
         out.append(f"| {name} | {rate:g} | {v['vpeak']:.1f} | {v['ipeak']:.2f} | "
-                   f"{v['irms']:.2f} | {v['decay'] * 1e6:.0f} | "
+                   f"{v['irms']:.2f} | {_time(v.get('decay'))} | "
                    f"{_time(v.get('reversal'))} | "
                    f"{v['ptransistor'] * 1e3:.0f} | {v['pclamp'] * 1e3:.0f} |")
     out += ["", "## Clamp, halves loosely coupled (k = 0.3), 12 V and ballast, 800 steps/s", "",

@@ -37,8 +37,8 @@ def winding(rate: float, **changed: float) -> Result:
 
     decay: from switching off until the winding's own current is at a tenth.
     reversal: from switching the other half off until the current that
-    magnetises the core has reached half its final value; missing when it never
-    does.
+    magnetises the core has reached half its final value. Each is missing when
+    it does not happen while the winding is off, or on.
     """
     result, rows = simulate("winding", waves=("i(L1)", "i(L2)"), rate=rate, **changed)
     values = {"vm": 12.0, "r": 5.0, "ballast": 3.3, **changed}
@@ -48,7 +48,9 @@ def winding(rate: float, **changed: float) -> Result:
     gone = [row[0] for row in rows if row[0] > off and row[1] < 0.1 * max(before)]
     come = [row[0] for row in rows if on < row[0] < on + 2 / rate
             and row[1] + row[2] > 0.5 * final]
-    extra = {"decay": gone[0] - off}
+    extra = {}
+    if gone:
+        extra["decay"] = gone[0] - off
     if come:
         extra["reversal"] = come[0] - on
     return Result({**result.values, **extra}, result.complaint)

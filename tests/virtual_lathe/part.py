@@ -32,7 +32,12 @@ class Face:
 
     z: int
     inner: int
-    nominal: Nominal
+    nominal: Nominal | None = None
+
+    @property
+    def drawn(self) -> Nominal:
+        """What the drawing says; whole steps when there is no drawing."""
+        return self.nominal or Nominal(self.inner, self.z)
 
 
 @dataclass(frozen=True)
@@ -42,7 +47,12 @@ class Cylinder:
     start: int
     end: int
     radius: int
-    nominal: Nominal
+    nominal: Nominal | None = None
+
+    @property
+    def drawn(self) -> Nominal:
+        """What the drawing says; whole steps when there is no drawing."""
+        return self.nominal or Nominal(self.radius, self.start - self.end)
 
 
 @dataclass(frozen=True)

@@ -175,7 +175,7 @@ class Workpiece:
             name = f"{kind} {numbers[kind]}"
             if isinstance(operation, Face):
                 z = self.face_position(operation.inner)
-                found.append(_dimension(f"{name} z", operation.nominal.length, z, step_z_nm / 1e6))
+                found.append(_dimension(f"{name} z", operation.drawn.length, z, step_z_nm / 1e6))
             else:
                 found += self._cylinder(name, operation, surface, step_x_nm, step_z_nm)
         return found
@@ -195,7 +195,7 @@ class Workpiece:
             return []
         radius = max((self.radius_at(z) for z in own), key=lambda r: abs(r - cylinder.radius))
         measured = _dimension(
-            f"{name} diameter", cylinder.nominal.radius, radius, 2 * step_x_nm / 1e6
+            f"{name} diameter", cylinder.drawn.radius, radius, 2 * step_x_nm / 1e6
         )
         end = cylinder.end
         if surface.get(end - 1, 0) > cylinder.radius:
@@ -206,7 +206,7 @@ class Workpiece:
                 shoulder -= 1
             end = shoulder
         cut = cylinder.start - end
-        length = _dimension(f"{name} length", cylinder.nominal.length, cut, step_z_nm / 1e6)
+        length = _dimension(f"{name} length", cylinder.drawn.length, cut, step_z_nm / 1e6)
         return [measured, length]
 
 

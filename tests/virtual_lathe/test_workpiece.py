@@ -118,7 +118,14 @@ def test_a_part_file_becomes_steps_of_the_nearest_size(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     part = read_part(file)
-    assert part == WantedPart(1786, 7143, 36, (Face(0, 0), Cylinder(0, -3571, 1071)))
+    face, cylinder = part.operations
+    assert (part.stock_radius, part.length, part.front) == (1786, 7143, 36)
+    assert isinstance(face, Face)
+    assert (face.z, face.inner) == (0, 0)
+    assert isinstance(cylinder, Cylinder)
+    assert (cylinder.start, cylinder.end, cylinder.radius) == (0, -3571, 1071)
+    assert cylinder.drawn.radius == pytest.approx(7.62 / 0.007112)
+    assert cylinder.drawn.length == pytest.approx(25.4 / 0.007112)
     surface = part.surface()
     assert [surface[z] for z in (36, 0, -1, -3571, -3572)] == [0, 0, 1071, 1071, 1786]
     file.write_text(

@@ -7,7 +7,7 @@ from typing import Any
 
 from tornillo.image import Operation, PartImage
 from tornillo.protocol import CylinderRecord, FaceRecord, ImageHeader
-from virtual_lathe.part import Cylinder, Face, WantedPart
+from virtual_lathe.part import Cylinder, Face, Nominal, WantedPart
 
 from simulated.bench import Bench
 
@@ -58,9 +58,14 @@ def image(
 def wanted(operations: tuple[Operation, ...] = OPERATIONS, front: int = FRONT) -> WantedPart:
     """Return what the virtual lathe shall compare the workpiece with."""
     shapes = tuple(
-        Face(record.z, record.x_inner)
+        Face(record.z, record.x_inner, Nominal(0.0, record.z))
         if isinstance(record, FaceRecord)
-        else Cylinder(record.z_start, record.z_end, record.x)
+        else Cylinder(
+            record.z_start,
+            record.z_end,
+            record.x,
+            Nominal(record.x, record.z_start - record.z_end),
+        )
         for record in operations
     )
     return WantedPart(RADIUS, LENGTH, front, shapes)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Resets of every kind: the cause is told, and nothing moves afterwards."""
+
+from __future__ import annotations
+
+import pytest
+from simulated import little_pin
+from simulated.bench import Bench
+from simulated.processes import on_a_new_chip
+from tornillo.protocol import ResetCause, State
+from virtual_lathe.chip import NonVolatile, Reset
+
+STACK_POINTER = 0xFFC
+BRANCH_TO_ITSELF = b"\xff\xd7"
+COILS = ("RB0", "RB1", "RB2", "RB3", "RD0", "RD1", "RD2", "RD3")
+
+
+def assert_quiet_after_reset(bench: Bench, cause: ResetCause) -> None:
+    """Check that the chip has started anew: no current, no motion, not homed."""
+    bench.chip.log_pins(*COILS)
+    bench.run(0.1)
+    assert bench.chip.pin_changes() == []
+    assert (bench.chip.port("B") & 15, bench.chip.port("D") & 15) == (0, 0)
+    assert bench.is_in(State.IDLE)
+    assert not bench.homed
+    bench.connect()
+    assert bench.status().reset_cause is cause
+    assert bench.status().uptime_ms < 1000
+
+
+def running_lathe() -> Bench:
+    """Return a lathe that is cutting."""
+    bench = little_pin.homed_lathe_with_pin()
+    bench.expect_broken("coil pattern legal", "at most one full step at a time", "no step lost")
+    bench.host.run()
+    bench.run(0.2)
+    assert bench.moving
+    return bench
+
+
+@pytest.mark.parametrize(
+    ("kind", "cause"),
+    [
+        (Reset.POWER_ON, ResetCause.POWER_ON),
+        (Reset.BROWN_OUT, ResetCause.BROWN_OUT),
+        (Reset.WATCHDOG, ResetCause.WATCHDOG),
+        (Reset.MCLR, ResetCause.MCLR),
+    ],
+)
+@on_a_new_chip
+def test_a_reset_in_mid_cut_is_told_by_its_cause_and_stops_everything(
+    kind: Reset, cause: ResetCause
+) -> None:
+    bench = running_lathe()
+    bench.lathe.unplug()
+    bench.chip.reset(kind)
+    bench.run(0.001)
+    assert_quiet_after_reset(bench, cause)
+    bench.home()
+    bench.host.run()
+    bench.run(0.1)
+    assert bench.is_in(State.RUNNING)
+
+
+@on_a_new_chip
+def test_a_main_loop_that_hangs_is_ended_by_the_watchdog_within_half_a_second() -> None:
+    bench = running_lathe()
+    bench.lathe.unplug()
+    hung_at = bench.chip.seconds
+    memory = bench.chip.save()
+    at = bench.chip.symbols.code("machine_poll")
+    hung = memory.flash[:at] + BRANCH_TO_ITSELF + memory.flash[at + 2 :]
+    bench.chip.restore(NonVolatile(hung, memory.eeprom))
+    bench.wait(lambda: len(bench.chip.resets) > 1, 0.5)
+    bench.chip.restore(memory)
+    assert bench.chip.resets[-1][1] is Reset.WATCHDOG
+    assert bench.chip.seconds - hung_at > 0.1
+    bench.run(0.001)
+    assert_quiet_after_reset(bench, ResetCause.WATCHDOG)
+
+
+@on_a_new_chip
+def test_a_stack_overflow_is_told_by_its_cause() -> None:
+    bench = running_lathe()
+    bench.lathe.unplug()
+    bench.chip.write(STACK_POINTER, 30)
+    bench.wait(lambda: len(bench.chip.resets) > 1, 0.1, 1e-4)
+    bench.chip.clear_statistics()
+    assert bench.chip.resets[-1][1] in (Reset.STACK_FULL, Reset.STACK_EMPTY)
+    bench.run(0.001)
+    assert_quiet_after_reset(bench, ResetCause.STACK)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@on_a_new_chip
+def test_whatever_is_in_ram_at_power_on_the_chip_starts_the_same(seed: int) -> None:
+    bench = Bench()
+    bench.run(0.05)
+    bench.power_cycle(seed)
+    assert_quiet_after_reset(bench, ResetCause.POWER_ON)
+    assert bench.host.settings()
+    bench.home()

@@ -2,8 +2,8 @@
 """The wanted shape, read from the part file without any code of the host program or firmware.
 
 Lengths become steps by exact arithmetic. What can be cut is rounded to the nearest step; what the
-drawing says stays exact beside it (``Nominal``), so that an error includes the rounding. The surface
-is a radius for every step of Z; at a shoulder the step belongs to the smaller radius.
+drawing says stays exact beside it (``Nominal``), so that an error includes the rounding. The
+surface is a radius for every step of Z; at a shoulder the step belongs to the smaller radius.
 """
 
 from __future__ import annotations

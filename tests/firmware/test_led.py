@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from simulated import little_pin
 from simulated.bench import Bench
@@ -22,7 +24,7 @@ def phases(bench: Bench, seconds: float) -> list[tuple[bool, float]]:
     changes = bench.chip.pin_changes()
     return [
         (bool(levels & LED_BIT), (after - cycle) / CYCLES_PER_SECOND * 1000)
-        for (cycle, levels), (after, _) in zip(changes, changes[1:], strict=False)
+        for (cycle, levels), (after, _) in pairwise(changes)
     ]
 
 
@@ -47,9 +49,7 @@ def test_after_a_reset_the_led_is_lit_for_two_seconds_and_then_blinks_slowly() -
     bench.run(5.0)
     (first, _), *_ = changes = bench.chip.pin_changes()
     assert first / CYCLES_PER_SECOND == pytest.approx(2.05, abs=0.1)
-    lengths = [
-        (b[0] - a[0]) / CYCLES_PER_SECOND for a, b in zip(changes, changes[1:], strict=False)
-    ]
+    lengths = [(b[0] - a[0]) / CYCLES_PER_SECOND for a, b in pairwise(changes)]
     assert lengths[1:] == [pytest.approx(0.512, abs=0.01)] * len(lengths[1:])
     assert len(lengths) >= 4
 

@@ -13,6 +13,8 @@ from tornillo.protocol import SETTINGS, Alarm, Axis, Command, ErrorCode, Setting
 from virtual_lathe.chip import NonVolatile
 
 FIRST, SECOND = 0x00, 0x70
+#: An EEPROM write takes 4 ms.
+CUT_EVERY_S = 1.7e-3
 RECORD_BYTES = 2 + 2 * len(SETTINGS) + 2
 
 
@@ -155,6 +157,11 @@ def test_a_cut_of_power_during_a_save_leaves_the_old_settings_or_the_new() -> No
     before = defaults(home_rate=600, zero_x=-1111, zero_z=-2222)
     after = before | {SettingId.ZERO_X: -3333}
 
+    def length_of_the_save() -> float:
+        begun = bench.chip.seconds
+        bench.set(zero_x=-3333)
+        return bench.chip.seconds - begun
+
     def cut(seconds: float) -> dict[SettingId, int]:
         bench.lathe.at(bench.chip.seconds + seconds, stop)
         try:
@@ -166,9 +173,8 @@ def test_a_cut_of_power_during_a_save_leaves_the_old_settings_or_the_new() -> No
         assert bench.is_in(State.IDLE)
         return values(bench)
 
-    begun = bench.chip.seconds
-    length = branch(lambda: (bench.set(zero_x=-3333), bench.chip.seconds - begun)[1])
-    found = [branch(partial(cut, step * 1.7e-3)) for step in range(1, round(length / 1.7e-3) + 4)]
+    steps = range(1, round(branch(length_of_the_save) / CUT_EVERY_S) + 4)
+    found = [branch(partial(cut, step * CUT_EVERY_S)) for step in steps]
     switch = found.index(after)
     assert found == [before] * switch + [after] * (len(found) - switch)
     assert switch > 5

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parts cut on the virtual lathe: every dimension, and how the tool got there."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from simulated import little_pin
+from simulated.bench import Bench
+from simulated.processes import on_a_new_chip
+from simulated.watching import Stroke, Watch
+from tornillo import Part
+from tornillo.protocol import Axis, CylinderRecord, FaceRecord, State
+from virtual_lathe.part import read_part
+
+HEAD = """
+[part]
+name = "pin"
+units = "mm"
+[stock]
+diameter = 4.0
+length = 6.0
+allowance = 0.2
+[cut]
+depth_of_cut = 0.17
+finish_allowance = {allowance}
+feed = 300.0
+finish_feed = 150.0
+retract = 0.1
+"""
+FACE = """
+[[operation]]
+type = "face"
+z = 0.0
+"""
+THICK, MIDDLE, THIN = (
+    f"""
+[[operation]]
+type = "cylinder"
+z = [{{start}}, {end}]
+diameter = {diameter}
+"""
+    for end, diameter in ((-3.0, 3.4), (-2.0, 2.6), (-1.0, 1.8))
+)
+THICK_FIRST = FACE + "".join(text.format(start=0.0) for text in (THICK, MIDDLE, THIN))
+THIN_FIRST = FACE + THIN.format(start=0.0) + MIDDLE.format(start=-1.0) + THICK.format(start=-2.0)
+NO_FACE = THICK.format(start=0.2) + THIN.format(start=0.2)
+TWICE = THICK_FIRST + THICK.format(start=0.0) + FACE
+HOLLOW_FACE = """
+[[operation]]
+type = "face"
+z = -0.5
+diameter = 1.0
+"""
+
+
+def cut(path: Path, text: str, seed: int, backlash_x: int, backlash_z: int) -> Bench:
+    """Write, upload and cut a part; every step of its surface must then be right."""
+    path.write_text(text, encoding="utf-8")
+    bench = Bench(
+        part=path,
+        stock_diameter_mm=4.0,
+        stock_length_mm=6.0,
+        stock_allowance_mm=0.2,
+        part_zero_x=-330,
+        part_zero_z=-80,
+        backlash_x=backlash_x,
+        backlash_z=backlash_z,
+        seed=seed,
+    )
+    bench.set(zero_x=-330, zero_z=-80, homing_repeats=1)
+    bench.home()
+    bench.host.upload(Part.load(path).image(bench.host.machine()))
+    bench.host.run()
+    bench.wait(lambda: bench.state is not State.RUNNING, 60.0, every=0.05)
+    assert bench.status().finished
+    assert_right(bench, path)
+    return bench
+
+
+def assert_right(bench: Bench, path: Path) -> None:
+    """Compare every dimension, and the surface step by step."""
+    report = bench.lathe.report()
+    assert report["dimensions"]
+    assert all(abs(entry["error_steps"]) < 1 for entry in report["dimensions"])
+    assert (report["lost_steps"], report["crashes"], report["gouge_max_steps"]) == (0, [], 0)
+    surface = read_part(path).surface()
+    work = bench.lathe.workpiece
+    assert {z: work.radius_at(z) for z in surface} == surface
+    assert (bench.axis(Axis.X).slide, bench.axis(Axis.Z).slide) == bench.position == (-20, -20)
+
+
+@pytest.mark.parametrize(
+    ("backlash_x", "backlash_z", "seed"),
+    [(0, 0, 1), (150, 0, 2), (0, 150, 3), (23, 31, 4), (1, 2, 5)],
+)
+@on_a_new_chip
+def test_a_faced_pin_of_three_diameters_is_right_whatever_the_backlash(
+    tmp_path: Path, backlash_x: int, backlash_z: int, seed: int
+) -> None:
+    text = HEAD.format(allowance=0.03) + THICK_FIRST
+    cut(tmp_path / "pin.toml", text, seed, backlash_x, backlash_z)
+
+
+@pytest.mark.parametrize(
+    ("operations", "allowance"),
+    [
+        pytest.param(THICK_FIRST, 0.0, id="thick first"),
+        pytest.param(THIN_FIRST, 0.03, id="thin first"),
+        pytest.param(NO_FACE, 0.03, id="not faced"),
+        pytest.param(TWICE, 0.0, id="again what is already cut"),
+        pytest.param(HOLLOW_FACE, 0.0, id="face that leaves a middle"),
+    ],
+)
+@on_a_new_chip
+def test_parts_are_right_in_every_order_of_operations(
+    tmp_path: Path, operations: str, allowance: float
+) -> None:
+    cut(tmp_path / "pin.toml", HEAD.format(allowance=allowance) + operations, 6, 12, 9)
+
+
+# -- how the tool moves ----------------------------------------------------------------------------
+
+
+def run_little_pin(bench: Bench) -> Watch:
+    """Cut the part stored on a homed bench and watch it."""
+    watch = Watch(bench)
+    bench.host.run()
+    bench.wait_for(State.IDLE)
+    return watch
+
+
+def expected_strokes() -> list[Stroke]:
+    """The little pin as firmware/lathe/passes.h describes it, written out."""
+    clear = 60 + 5
+    # To 5 steps in front of the raw face, and on to the face: 6 steps in one pass.
+    approach = [Stroke("X", -(100 - 20 - clear), 1000), Stroke("Z", -(60 - 20), 1000)]
+    face = [
+        Stroke("X", -65, 400),
+        Stroke("Z", 5, 1000),
+        Stroke("X", 65, 1000),
+    ]
+    # 25 steps, 2 of them left for finishing: 23 in three passes of 8, 8 and 7.
+    levels, passes = [clear, 52, 44, 37, 35], []
+    for before, level in pairwise(levels):
+        down = before - level if before == clear else before + 5 - level
+        feed = 200 if level == 35 else 400
+        passes += [
+            Stroke("X", -down, 1000),
+            Stroke("Z", -45, feed),
+            Stroke("X", 5, 1000),
+            Stroke("Z", 45, 1000),
+        ]
+    park = [Stroke("X", 100 - 20 - 35 - 5, 1000), Stroke("Z", 60 - 20 - 5, 1000)]
+    return [*approach, *face, *passes, *park]
+
+
+@pytest.mark.parametrize("backlash", [0, 12])
+@on_a_new_chip
+def test_each_pass_is_infeed_cut_retract_and_rapid_return(backlash: int) -> None:
+    bench = little_pin.homed_lathe_with_pin(backlash_x=backlash, backlash_z=backlash)
+    watch = run_little_pin(bench)
+    assert watch.strokes() == expected_strokes()
+    little_pin.assert_cut_exactly(bench)
+
+
+@on_a_new_chip
+def test_metal_is_only_cut_at_feed_and_never_deeper_than_the_depth_of_cut() -> None:
+    bench = little_pin.homed_lathe_with_pin(backlash_x=12, backlash_z=7)
+    watch = run_little_pin(bench)
+    cutting = [movement for movement in watch.movements if movement.cut]
+    assert {movement.axis for movement in cutting if movement.z > 0} <= {"X"}
+    levels = sorted({movement.x for movement in cutting if movement.axis == "Z"}, reverse=True)
+    assert levels == [52, 44, 37, 35]
+    report = bench.lathe.report()
+    assert report["crashes"] == []
+
+
+@on_a_new_chip
+def test_dead_steps_are_taken_up_in_front_of_the_work_and_never_while_cutting() -> None:
+    bench = little_pin.homed_lathe_with_pin(backlash_x=12, backlash_z=7)
+    watch = run_little_pin(bench)
+    slack = watch.slack_steps()
+    assert {entry.axis for entry in slack} == {"X", "Z"}
+    towards_work = [entry for entry in slack if entry.direction < 0]
+    assert len(towards_work) >= 4 * 12 + 4 * 7
+    for entry in towards_work:
+        place = watch.place_at(entry.cycle)
+        assert place is None or place.clear, entry
+    for first, then in pairwise(watch.movements):
+        if first.cut and then.cut and first.axis == then.axis:
+            assert not [entry for entry in slack if first.cycle < entry.cycle < then.cycle]
+
+
+@on_a_new_chip
+def test_an_operation_inside_what_is_already_cut_costs_no_pass() -> None:
+    once = little_pin.homed_lathe_with_pin()
+    operations = (*little_pin.OPERATIONS, CylinderRecord(-10, -30, 40), FaceRecord(3, 0))
+    once.host.upload(little_pin.image("with-more", operations))
+    watch = run_little_pin(once)
+    assert watch.strokes() == expected_strokes()
+
+
+@on_a_new_chip
+def test_progress_grows_steadily_and_names_operation_and_pass() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    bench.host.run()
+    seen = []
+    while bench.is_in(State.RUNNING):
+        bench.run(0.02)
+        seen.append(bench.status())
+    done = [status.permille for status in seen]
+    assert done == sorted(done)
+    assert done[-1] == 1000
+    assert {s.operations for s in seen[:-1]} == {2}
+    shown = [(s.operation, s.pass_number, s.passes) for s in seen[:-1] if s.operation]
+    assert sorted(set(shown)) == [(1, 1, 1), (2, 1, 4), (2, 2, 4), (2, 3, 4), (2, 4, 4)]
+    assert shown == sorted(shown)

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Watches a run from outside: every movement of the slides, what it cut, when slack was taken up."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from tornillo.protocol import Axis
+from virtual_lathe.chip import CYCLES_PER_SECOND
+from virtual_lathe.machine import Move
+
+from simulated.bench import Bench
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Movement of one slide in one direction: steps with sign, rate of its last step in steps/s."""
+
+    axis: str
+    steps: int
+    rate: int
+
+
+@dataclass(frozen=True)
+class Movement:
+    """One step of a slide, where the tool then is (part coordinates), and whether it cut."""
+
+    cycle: int
+    axis: str
+    direction: int
+    x: float
+    z: float
+    cut: bool
+    clear: bool
+
+
+@dataclass(frozen=True)
+class Slack:
+    """A step that turned the screw only."""
+
+    cycle: int
+    axis: str
+    direction: int
+
+
+class Watch:
+    """What happens on a bench from now on; begin while nothing moves."""
+
+    def __init__(self, bench: Bench) -> None:
+        """Listen to the slides and to the slack counters."""
+        self.movements: list[Movement] = []
+        self._bench = bench
+        bench.run(1e-4)
+        self._last = (2 * bench.axis(Axis.X).slide, 2 * bench.axis(Axis.Z).slide)
+        self._work = bench.lathe.workpiece
+        self._cut = self._work.cut
+        vars(self._work)["cut"] = self._note
+        slack = bench.chip.symbols.ram("slack_x")
+        self._slack = {slack + i: bench.chip.peek(slack + i) for i in range(4)}
+        bench.chip.watch_writes(slack, slack + 3)
+
+    def _note(self, moves: Iterable[Move]) -> None:
+        for move in moves:
+            before = self._work.steps_cutting
+            self._cut([move])
+            axis = "X" if move.x != self._last[0] else "Z"
+            direction = 1 if (move.x, move.z) > self._last else -1
+            self._last = move.x, move.z
+            x, z = move.x / 2 - self._work.zero_x, move.z / 2 - self._work.zero_z
+            cut = self._work.steps_cutting > before
+            self.movements.append(
+                Movement(move.cycle, axis, direction, x, z, cut, self._is_clear(x, z))
+            )
+
+    def _is_clear(self, x: float, z: float) -> bool:
+        """Whether no material stands where the tool or anything in front of it is."""
+        front = range(math.floor(z), self._work.stock.allowance + 1)
+        return all(self._work.radius_at(place) < x for place in front)
+
+    def strokes(self) -> list[Stroke]:
+        """Return the run as strokes of one slide each."""
+        found: list[Stroke] = []
+        cycle = 0
+        for movement in self.movements:
+            rate = round(CYCLES_PER_SECOND / (movement.cycle - cycle))
+            cycle = movement.cycle
+            last = found[-1] if found else Stroke("", 0, 0)
+            if last.axis == movement.axis and last.steps * movement.direction > 0:
+                found[-1] = Stroke(last.axis, last.steps + movement.direction, rate)
+            else:
+                found.append(Stroke(movement.axis, movement.direction, rate))
+        return found
+
+    def slack_steps(self) -> list[Slack]:
+        """Return the steps that were taken up while the slides stood."""
+        symbols = self._bench.chip.symbols
+        names = {symbols.ram(f"slack_{name}"): name.upper() for name in "xz"}
+        values = dict(self._slack)
+        found = []
+        for write in self._bench.chip.ram_writes():
+            if write.address in names:  # the low byte changes at every step
+                step = (write.value - values[write.address]) & 0xFF
+                values[write.address] = write.value
+                found.append(Slack(write.cycle, names[write.address], 1 if step < 0x80 else -1))
+        return found
+
+    def place_at(self, cycle: int) -> Movement | None:
+        """Return the last movement before a cycle."""
+        before = [movement for movement in self.movements if movement.cycle <= cycle]
+        return before[-1] if before else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Watches a run from outside: every movement of the slides, what it cut, when slack was taken up."""
+"""Watches a run from outside: how the slides move, what they cut, when slack is taken up."""
 
 from __future__ import annotations
 

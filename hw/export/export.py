@@ -74,8 +74,10 @@ def main(arguments: list[str]) -> int:
     kicad("sch", "export", "netlist", "--format", "kicadxml", "-o", netlist, SCHEMATIC)
     kicad("sch", "export", "pdf", "-o", out / "schematic.pdf", SCHEMATIC)
     kicad("pcb", "export", "pdf", "--mode-multipage", "--include-border-title", "-l",
-          "F.Cu,B.Cu,F.Silkscreen,F.Fab", "--common-layers", "Edge.Cuts", "-o",
-          out / "board.pdf", BOARD)
+          "F.Cu,B.Cu,F.Silkscreen,F.Fab", "--common-layers", "Edge.Cuts", "-o", out / "pages",
+          BOARD)
+    (out / "pages/tornillo.pdf").replace(out / "board.pdf")
+    (out / "pages").rmdir()
     total = bom.write(netlist, out)
     wiring.write(netlist, out / "wiring.svg")
     fabrication(out)

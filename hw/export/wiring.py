@@ -20,15 +20,15 @@ CONNECTORS: dict[str, tuple[str, list[Wire]]] = {
     "J3": ("Emergency stop, normally closed", [
         ("VFUSE", "1 mm2", "stop button 11"), ("VMOT", "1 mm2", "stop button 12")]),
     "J5": ("Motor Z (along the bed)", [
-        ("VMOT", "0.75 mm2", "ballast 3.3 ohm 25 W, then motor common"),
+        ("VMOT", "0.75 mm2", "3.3 ohm 25 W, then common"),
         ("Z_PH1", "0.5 mm2", "winding 1"), ("Z_PH2", "0.5 mm2", "winding 2"),
         ("Z_PH3", "0.5 mm2", "winding 3"), ("Z_PH4", "0.5 mm2", "winding 4"),
-        ("VMOT", "0.75 mm2", "second common of a 6-wire motor, by its own ballast")]),
+        ("VMOT", "", "spare, same as 1")]),
     "J6": ("Motor X (cross slide)", [
-        ("VMOT", "0.75 mm2", "ballast 3.3 ohm 25 W, then motor common"),
+        ("VMOT", "0.75 mm2", "3.3 ohm 25 W, then common"),
         ("X_PH1", "0.5 mm2", "winding 1"), ("X_PH2", "0.5 mm2", "winding 2"),
         ("X_PH3", "0.5 mm2", "winding 3"), ("X_PH4", "0.5 mm2", "winding 4"),
-        ("VMOT", "0.75 mm2", "second common of a 6-wire motor, by its own ballast")]),
+        ("VMOT", "", "spare, same as 1")]),
     "J7": ("Limit switches, normally closed", [
         ("SW_X", "screened pair", "switch X: common"), ("MGND", "", "switch X: NC contact"),
         ("SW_Z", "screened pair", "switch Z: common"), ("MGND", "", "switch Z: NC contact")]),
@@ -89,9 +89,9 @@ def write(netlist: Path, target: Path) -> None:
                 body.append(_text(x + 13, line, str(index + 1), colour="white"))
                 shown = "SUPPLY_P" if net == "*" else real
                 body.append(_text(x + 38, line, shown))
-                body.append(f'<line x1="{x + 130}" y1="{line - 4}" x2="{x + 165}" '
+                body.append(f'<line x1="{x + 140}" y1="{line - 4}" x2="{x + 170}" '
                             f'y2="{line - 4}" stroke="#b00" stroke-width="2"/>')
-                body.append(_text(x + 172, line, ": ".join(word for word in (end, wire) if word)))
+                body.append(_text(x + 178, line, ": ".join(word for word in (end, wire) if word)))
             y += height + 14
         bottom = max(bottom, y)
     width = len(COLUMNS) * (WIDTH + 20)

@@ -29,8 +29,9 @@ GENERATED = ("*.kicad_sch", "tornillo.kicad_pcb", "tornillo.kicad_pro")
 
 def run(command: list[str | Path], folder: Path | None = None) -> subprocess.CompletedProcess[str]:
     """Run a command, its output captured."""
-    return subprocess.run([str(word) for word in command], cwd=folder, text=True, check=False,
-                          capture_output=True)
+    return subprocess.run(
+        [str(word) for word in command], cwd=folder, text=True, check=False, capture_output=True
+    )
 
 
 def tail(done: subprocess.CompletedProcess[str]) -> list[str]:
@@ -40,8 +41,9 @@ def tail(done: subprocess.CompletedProcess[str]) -> list[str]:
 
 def export_netlist(schematic: Path, target: Path) -> list[str]:
     """Write the netlist as XML; return complaints."""
-    done = run(["kicad-cli", "sch", "export", "netlist", "--format", "kicadxml", "-o", target,
-                schematic])
+    done = run(
+        ["kicad-cli", "sch", "export", "netlist", "--format", "kicadxml", "-o", target, schematic]
+    )
     return [] if done.returncode == 0 and target.is_file() else tail(done)
 
 
@@ -58,54 +60,90 @@ def check_generated(root: Path) -> list[str]:
         complaints = export_netlist(copy / "tornillo.kicad_sch", netlist)
         if complaints:
             return complaints
-        for step in (["place", netlist, board, Path(name) / "board.dsn"],
-                     ["finish", board, copy / "layout/tornillo.ses"]):
+        steps: list[list[str | Path]] = [
+            ["place", netlist, board, Path(name) / "board.dsn"],
+            ["finish", board, copy / "layout/tornillo.ses"],
+        ]
+        for step in steps:
             built = run([KICAD_PYTHON, copy / "build_board.py", *step])
             if built.returncode:
                 return tail(built)
-        return [f"{path.name} is not what the scripts write"
-                for pattern in GENERATED for path in sorted(original.glob(pattern))
-                if path.read_bytes() != (copy / path.name).read_bytes()]
+        return [
+            f"{path.name} is not what the scripts write"
+            for pattern in GENERATED
+            for path in sorted(original.glob(pattern))
+            if path.read_bytes() != (copy / path.name).read_bytes()
+        ]
 
 
 def check_erc(root: Path) -> list[str]:
     """Run KiCad's electrical rules, warnings included."""
     with tempfile.TemporaryDirectory() as name:
         report = Path(name) / "erc.json"
-        done = run(["kicad-cli", "sch", "erc", "--severity-all", "--exit-code-violations",
-                    "--format", "json", "-o", report, root / "hw/kicad/tornillo.kicad_sch"])
+        done = run(
+            [
+                "kicad-cli",
+                "sch",
+                "erc",
+                "--severity-all",
+                "--exit-code-violations",
+                "--format",
+                "json",
+                "-o",
+                report,
+                root / "hw/kicad/tornillo.kicad_sch",
+            ]
+        )
         if done.returncode == 0:
             return []
         if not report.is_file():
             return tail(done)
         sheets = json.loads(report.read_text(encoding="utf-8"))["sheets"]
-        return [f"{sheet['path']} {found['type']}: {found['description']}"
-                for sheet in sheets for found in sheet["violations"]]
+        return [
+            f"{sheet['path']} {found['type']}: {found['description']}"
+            for sheet in sheets
+            for found in sheet["violations"]
+        ]
 
 
 def check_drc(root: Path) -> list[str]:
     """Run KiCad's design rules and compare the board with the schematic."""
     with tempfile.TemporaryDirectory() as name:
         report = Path(name) / "drc.json"
-        done = run(["kicad-cli", "pcb", "drc", "--severity-all", "--schematic-parity",
-                    "--exit-code-violations", "--format", "json", "-o", report,
-                    root / "hw/kicad/tornillo.kicad_pcb"])
+        done = run(
+            [
+                "kicad-cli",
+                "pcb",
+                "drc",
+                "--severity-all",
+                "--schematic-parity",
+                "--exit-code-violations",
+                "--format",
+                "json",
+                "-o",
+                report,
+                root / "hw/kicad/tornillo.kicad_pcb",
+            ]
+        )
         if done.returncode == 0:
             return []
         if not report.is_file():
             return tail(done)
         findings = json.loads(report.read_text(encoding="utf-8"))
-        return [f"{found['type']}: {found['description']}"
-                for kind in ("violations", "unconnected_items", "schematic_parity")
-                for found in findings[kind]]
+        return [
+            f"{found['type']}: {found['description']}"
+            for kind in ("violations", "unconnected_items", "schematic_parity")
+            for found in findings[kind]
+        ]
 
 
 def check_nets(root: Path) -> list[str]:
     """Compare the netlist with the hand-kept tables and firmware/board.h."""
     with tempfile.TemporaryDirectory() as name:
         netlist = Path(name) / "net.xml"
-        return (export_netlist(root / "hw/kicad/tornillo.kicad_sch", netlist)
-                or nets.check(netlist, root / "firmware/board.h"))
+        return export_netlist(root / "hw/kicad/tornillo.kicad_sch", netlist) or nets.check(
+            netlist, root / "firmware/board.h"
+        )
 
 
 def check_spice(root: Path) -> list[str]:
@@ -115,7 +153,10 @@ def check_spice(root: Path) -> list[str]:
 
 
 CHECKS: dict[str, Callable[[Path], list[str]]] = {
-    "generated": check_generated, "erc": check_erc, "drc": check_drc, "nets": check_nets,
+    "generated": check_generated,
+    "erc": check_erc,
+    "drc": check_drc,
+    "nets": check_nets,
     "spice": check_spice,
 }
 
@@ -124,8 +165,7 @@ def main(arguments: list[str]) -> int:
     """Run the wanted checks; return the exit status."""
     parser = argparse.ArgumentParser(description="Check the board.")
     parser.add_argument("--only", nargs="+", choices=list(CHECKS), default=list(CHECKS))
-    parser.add_argument("root", nargs="?", type=Path,
-                        default=Path(__file__).resolve().parents[2])
+    parser.add_argument("root", nargs="?", type=Path, default=Path(__file__).resolve().parents[2])
     wanted = parser.parse_args(arguments)
     failed = False
     for name in wanted.only:

@@ -9,8 +9,8 @@ data sheet, so that a wrong pin in the symbol shows too.
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from xml.etree import ElementTree
 
 HERE = Path(__file__).resolve().parent
 Pins = frozenset[str]
@@ -32,8 +32,9 @@ class Netlist:
     def __init__(self, path: Path) -> None:
         """Read an XML netlist; raises ParseError when it is none."""
         tree = ElementTree.parse(path)
-        self.values = {part.get("ref", ""): part.findtext("value", "")
-                       for part in tree.iterfind(".//comp")}
+        self.values = {
+            part.get("ref", ""): part.findtext("value", "") for part in tree.iterfind(".//comp")
+        }
         self.nets: dict[str, Pins] = {}
         self.open: set[str] = set()
         for net in tree.iterfind(".//net"):
@@ -60,9 +61,7 @@ def read_table(path: Path) -> dict[str, list[str]]:
 
 def compare_nets(netlist: Netlist, table: dict[str, list[str]]) -> list[str]:
     """Return a line for each difference between netlist and table."""
-    complaints = []
-    for name, pins in _repeated(table):
-        complaints.append(f"the table has {pins} twice ({name})")
+    complaints = [f"the table has {pin} twice ({name})" for name, pin in _repeated(table)]
     wanted = {name: frozenset(pins) for name, pins in table.items() if name != "nc"}
     by_pins = {pins: name for name, pins in netlist.nets.items()}
     for name, pins in wanted.items():
@@ -73,12 +72,15 @@ def compare_nets(netlist: Netlist, table: dict[str, list[str]]) -> list[str]:
             complaints.append(f"net {name} is missing")
         elif netlist.nets[name] != pins:
             found = netlist.nets[name]
-            complaints.append(f"net {name}: missing {_list(pins - found)}, "
-                              f"too many {_list(found - pins)}")
+            complaints.append(
+                f"net {name}: missing {_list(pins - found)}, too many {_list(found - pins)}"
+            )
     known = set(wanted.values())
-    complaints += [f"net {name} ({_list(pins)}) is not in the table"
-                   for name, pins in netlist.nets.items()
-                   if name not in wanted and pins not in known]
+    complaints += [
+        f"net {name} ({_list(pins)}) is not in the table"
+        for name, pins in netlist.nets.items()
+        if name not in wanted and pins not in known
+    ]
     if netlist.open != set(table.get("nc", [])):
         complaints.append(f"open pins differ: {_list(netlist.open ^ set(table.get('nc', [])))}")
     return complaints
@@ -102,10 +104,12 @@ def _list(pins: set[str] | Pins) -> str:
 def compare_parts(netlist: Netlist, table: dict[str, list[str]]) -> list[str]:
     """Return a line for each part whose value differs from the table."""
     wanted = {ref: value for value, refs in table.items() for ref in refs}
-    return [f"{ref} is {netlist.values.get(ref, 'missing')!r}, "
-            f"the table says {wanted.get(ref, 'nothing')!r}"
-            for ref in sorted(wanted.keys() | netlist.values.keys())
-            if wanted.get(ref) != netlist.values.get(ref)]
+    return [
+        f"{ref} is {netlist.values.get(ref, 'missing')!r}, "
+        f"the table says {wanted.get(ref, 'nothing')!r}"
+        for ref in sorted(wanted.keys() | netlist.values.keys())
+        if wanted.get(ref) != netlist.values.get(ref)
+    ]
 
 
 def compare_board_header(netlist: Netlist, header: Path) -> list[str]:
@@ -120,14 +124,17 @@ def compare_board_header(netlist: Netlist, header: Path) -> list[str]:
         number = PORT_PINS[port][int(bit)] if int(bit) < len(PORT_PINS[port]) else None
         net = next((net for net, on in netlist.nets.items() if f"U1.{number}" in on), "nothing")
         if net != name:
-            complaints.append(f"{header.name} has {name} on R{port}{bit}, pin {number}; "
-                              f"the board has {net} there")
+            complaints.append(
+                f"{header.name} has {name} on R{port}{bit}, pin {number}; the board has {net} there"
+            )
     return complaints
 
 
 def check(netlist_path: Path, header: Path) -> list[str]:
     """Return all differences, empty when the netlist is as wanted."""
     netlist = Netlist(netlist_path)
-    return [*compare_nets(netlist, read_table(HERE / "expected_nets.txt")),
-            *compare_parts(netlist, read_table(HERE / "expected_parts.txt")),
-            *compare_board_header(netlist, header)]
+    return [
+        *compare_nets(netlist, read_table(HERE / "expected_nets.txt")),
+        *compare_parts(netlist, read_table(HERE / "expected_parts.txt")),
+        *compare_board_header(netlist, header),
+    ]

@@ -11,9 +11,9 @@ from __future__ import annotations
 import csv
 import html
 import re
-import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 CATALOGUE = Path(__file__).resolve().parent / "catalogue.csv"
 UNBOUGHT = re.compile(r"^(H|TP)\d+$")
@@ -39,7 +39,7 @@ class Line:
 
 def _order(ref: str) -> tuple[str, int]:
     letters = ref.rstrip("0123456789")
-    return letters, int(ref[len(letters):])
+    return letters, int(ref[len(letters) :])
 
 
 def read(netlist: Path) -> list[Line]:
@@ -55,8 +55,17 @@ def read(netlist: Path) -> list[Line]:
     lines = []
     for (value, footprint), refs in groups.items():
         row = catalogue["SUPPLYJ" if refs == ["J2"] else value]
-        lines.append(Line(tuple(sorted(refs, key=_order)), value, footprint, row["what"],
-                          row["part"], row["second_source"], float(row["usd"])))
+        lines.append(
+            Line(
+                tuple(sorted(refs, key=_order)),
+                value,
+                footprint,
+                row["what"],
+                row["part"],
+                row["second_source"],
+                float(row["usd"]),
+            )
+        )
     return sorted(lines, key=lambda line: _order(line.refs[0]))
 
 
@@ -66,17 +75,50 @@ def write(netlist: Path, folder: Path) -> float:
     total = sum(line.total for line in lines)
     with (folder / "bom.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["references", "count", "value", "footprint", "what", "order",
-                        "second sources", "USD each", "USD"])
+        table.writerow(
+            [
+                "references",
+                "count",
+                "value",
+                "footprint",
+                "what",
+                "order",
+                "second sources",
+                "USD each",
+                "USD",
+            ]
+        )
         for line in lines:
-            table.writerow([" ".join(line.refs), len(line.refs), line.value, line.footprint,
-                            line.what, line.part, line.second_source, f"{line.usd:.2f}",
-                            f"{line.total:.2f}"])
+            table.writerow(
+                [
+                    " ".join(line.refs),
+                    len(line.refs),
+                    line.value,
+                    line.footprint,
+                    line.what,
+                    line.part,
+                    line.second_source,
+                    f"{line.usd:.2f}",
+                    f"{line.total:.2f}",
+                ]
+            )
     rows = "\n".join(
-        "<tr><td><input type=checkbox></td>" + "".join(
-            f"<td>{html.escape(str(cell))}</td>" for cell in (
-                " ".join(line.refs), len(line.refs), line.value, line.what, line.part,
-                line.second_source, f"{line.total:.2f}")) + "</tr>" for line in lines)
+        "<tr><td><input type=checkbox></td>"
+        + "".join(
+            f"<td>{html.escape(str(cell))}</td>"
+            for cell in (
+                " ".join(line.refs),
+                len(line.refs),
+                line.value,
+                line.what,
+                line.part,
+                line.second_source,
+                f"{line.total:.2f}",
+            )
+        )
+        + "</tr>"
+        for line in lines
+    )
     (folder / "bom.html").write_text(
         "<!doctype html><meta charset=utf-8><title>Tornillo board: parts</title>\n"
         "<style>body{font:14px sans-serif;margin:2em}table{border-collapse:collapse}"
@@ -86,5 +128,6 @@ def write(netlist: Path, folder: Path) -> float:
         f"about {total:.0f} US dollars for one board, without the board itself.</p>\n"
         "<table><tr><th></th><th>references</th><th>count</th><th>value</th><th>what</th>"
         f"<th>order</th><th>second sources</th><th>USD</th></tr>\n{rows}\n</table>\n",
-        encoding="utf-8")
+        encoding="utf-8",
+    )
     return total

@@ -30,19 +30,23 @@ LAYERS = "F.Cu,B.Cu,F.Mask,B.Mask,F.Silkscreen,B.Silkscreen,F.Paste,Edge.Cuts"
 
 def kicad(*words: str | Path, also_fine: int = 0) -> None:
     """Run kicad-cli; end the program when it fails."""
-    done = subprocess.run(["kicad-cli", *map(str, words)], text=True, check=False,
-                          capture_output=True)
+    done = subprocess.run(
+        ["kicad-cli", *map(str, words)], text=True, check=False, capture_output=True
+    )
     if done.returncode not in (0, also_fine):
         sys.exit(f"kicad-cli {' '.join(map(str, words[:3]))} failed:\n{done.stdout}{done.stderr}")
 
 
 def models() -> bool:
     """Fetch the 3D models of the parts; tell whether they are there."""
-    done = subprocess.run([str(HERE / "fetch_models.sh"), str(BOARD)], text=True, check=False,
-                          capture_output=True)
+    done = subprocess.run(
+        [str(HERE / "fetch_models.sh"), str(BOARD)], text=True, check=False, capture_output=True
+    )
     if done.returncode:
-        print("warning: the 3D models cannot be fetched; pictures and STEP show the bare board",
-              file=sys.stderr)
+        print(
+            "warning: the 3D models cannot be fetched; pictures and STEP show the bare board",
+            file=sys.stderr,
+        )
         return False
     os.environ["KICAD9_3DMODEL_DIR"] = done.stdout.strip()
     return True
@@ -54,13 +58,35 @@ def fabrication(out: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     kicad("pcb", "export", "gerbers", "-l", LAYERS, "-o", f"{folder}/", BOARD)
-    kicad("pcb", "export", "drill", "--format", "excellon", "--excellon-separate-th",
-          "--generate-map", "--map-format", "gerberx2", "-o", f"{folder}/", BOARD)
+    kicad(
+        "pcb",
+        "export",
+        "drill",
+        "--format",
+        "excellon",
+        "--excellon-separate-th",
+        "--generate-map",
+        "--map-format",
+        "gerberx2",
+        "-o",
+        f"{folder}/",
+        BOARD,
+    )
     with zipfile.ZipFile(out / "gerbers.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         for path in sorted(folder.iterdir()):
             archive.write(path, path.name)
-    kicad("pcb", "export", "pos", "--format", "csv", "--units", "mm", "-o",
-          out / "positions.csv", BOARD)
+    kicad(
+        "pcb",
+        "export",
+        "pos",
+        "--format",
+        "csv",
+        "--units",
+        "mm",
+        "-o",
+        out / "positions.csv",
+        BOARD,
+    )
 
 
 def main(arguments: list[str]) -> int:
@@ -73,20 +99,53 @@ def main(arguments: list[str]) -> int:
     netlist = out / "netlist.xml"
     kicad("sch", "export", "netlist", "--format", "kicadxml", "-o", netlist, SCHEMATIC)
     kicad("sch", "export", "pdf", "-o", out / "schematic.pdf", SCHEMATIC)
-    kicad("pcb", "export", "pdf", "--mode-multipage", "--include-border-title", "-l",
-          "F.Cu,B.Cu,F.Silkscreen,F.Fab", "--common-layers", "Edge.Cuts", "-o", out / "pages",
-          BOARD)
+    kicad(
+        "pcb",
+        "export",
+        "pdf",
+        "--mode-multipage",
+        "--include-border-title",
+        "-l",
+        "F.Cu,B.Cu,F.Silkscreen,F.Fab",
+        "--common-layers",
+        "Edge.Cuts",
+        "-o",
+        out / "pages",
+        BOARD,
+    )
     (out / "pages/tornillo.pdf").replace(out / "board.pdf")
     (out / "pages").rmdir()
     total = bom.write(netlist, out)
     wiring.write(netlist, out / "wiring.svg")
     fabrication(out)
     with_parts = models()
-    kicad("pcb", "export", "step", "--force", *([] if with_parts else ["--board-only"]), "-o",
-          out / "tornillo.step", BOARD, also_fine=2)
+    kicad(
+        "pcb",
+        "export",
+        "step",
+        "--force",
+        *([] if with_parts else ["--board-only"]),
+        "-o",
+        out / "tornillo.step",
+        BOARD,
+        also_fine=2,
+    )
     for side in ("top", "bottom"):
-        kicad("pcb", "render", "--side", side, "--quality", "basic", "-w", "1600", "-h", "1200",
-              "-o", out / f"board-{side}.png", BOARD)
+        kicad(
+            "pcb",
+            "render",
+            "--side",
+            side,
+            "--quality",
+            "basic",
+            "-w",
+            "1600",
+            "-h",
+            "1200",
+            "-o",
+            out / f"board-{side}.png",
+            BOARD,
+        )
     print(f"{out}: schematic, gerbers, STEP, pictures; parts cost about {total:.0f} US dollars")
     return 0
 

@@ -17,9 +17,10 @@ import importlib
 import json
 import os
 import sys
-import xml.etree.ElementTree as ElementTree
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 from layout import copper, netclasses, placement, silkscreen
 
@@ -108,8 +109,12 @@ def _footprints(board: Any, components: list[ElementTree.Element], nets: Nets) -
 
 
 def _outline(board: Any) -> None:
-    corners = [(0, 0), (placement.WIDTH, 0), (placement.WIDTH, placement.HEIGHT),
-               (0, placement.HEIGHT)]
+    corners = [
+        (0, 0),
+        (placement.WIDTH, 0),
+        (placement.WIDTH, placement.HEIGHT),
+        (0, placement.HEIGHT),
+    ]
     radius = 3.0
     for index, (x, y) in enumerate(corners):
         nx, ny = corners[(index + 1) % 4]
@@ -155,7 +160,7 @@ def _hand_copper(board: Any, nets: Nets) -> None:
     full = {name.rsplit("/", 1)[-1]: name for name in nets}
     for name, layer, width, points in copper.TRACKS:
         spots = [_spot(board, point) for point in points]
-        for start, end in zip(spots, spots[1:], strict=False):
+        for start, end in pairwise(spots):
             track = pcbnew.PCB_TRACK(board)
             track.SetStart(start)
             track.SetEnd(end)
@@ -177,23 +182,44 @@ def write_classes(nets: Nets) -> None:
     """Write net classes and each net's class into the project file."""
     path = HERE / "tornillo.kicad_pro"
     project = json.loads(path.read_text(encoding="utf-8"))
-    base = {"bus_width": 12, "diff_pair_gap": 0.25, "diff_pair_via_gap": 0.25,
-            "diff_pair_width": 0.3, "line_style": 0, "microvia_diameter": 0.3,
-            "microvia_drill": 0.1, "pcb_color": "rgba(0, 0, 0, 0.000)",
-            "schematic_color": "rgba(0, 0, 0, 0.000)", "wire_width": 6}
+    base = {
+        "bus_width": 12,
+        "diff_pair_gap": 0.25,
+        "diff_pair_via_gap": 0.25,
+        "diff_pair_width": 0.3,
+        "line_style": 0,
+        "microvia_diameter": 0.3,
+        "microvia_drill": 0.1,
+        "pcb_color": "rgba(0, 0, 0, 0.000)",
+        "schematic_color": "rgba(0, 0, 0, 0.000)",
+        "wire_width": 6,
+    }
     machine_parts = frozenset(ref for ref, (x, _, _) in placement.places().items() if x > 90)
     project["net_settings"] = {
-        "classes": [{**base, "name": name, "track_width": width, "clearance": clearance,
-                     "via_diameter": via, "via_drill": drill,
-                     "priority": 2147483647 if name == "Default" else index}
-                    for index, (name, (width, clearance, via, drill))
-                    in enumerate(netclasses.CLASSES.items())],
-        "meta": {"version": 4}, "net_colors": None, "netclass_assignments": None,
+        "classes": [
+            {
+                **base,
+                "name": name,
+                "track_width": width,
+                "clearance": clearance,
+                "via_diameter": via,
+                "via_drill": drill,
+                "priority": 2147483647 if name == "Default" else index,
+            }
+            for index, (name, (width, clearance, via, drill)) in enumerate(
+                netclasses.CLASSES.items()
+            )
+        ],
+        "meta": {"version": 4},
+        "net_colors": None,
+        "netclass_assignments": None,
         "netclass_patterns": [
-            {"netclass": netclasses.class_of(
-                name, netclasses.machine_side(pins, machine_parts)),
-             "pattern": name.replace("{slash}", "/")}
-            for name, pins in sorted(nets.items())],
+            {
+                "netclass": netclasses.class_of(name, netclasses.machine_side(pins, machine_parts)),
+                "pattern": name.replace("{slash}", "/"),
+            }
+            for name, pins in sorted(nets.items())
+        ],
     }
     project["board"] = {"design_settings": {"rules": {"min_resolved_spokes": 1}}}
     path.write_text(json.dumps(project, indent=2, sort_keys=True) + "\n", encoding="utf-8")
@@ -216,9 +242,11 @@ def finish(target: Path, routes: Path) -> None:
 def _pours(board: Any) -> None:
     left, right = placement.GAP
     edge = 0.6
-    areas = [("GND", (edge, edge, left - 0.05, placement.HEIGHT - edge), 0),
-             ("MGND", (right + 0.05, edge, placement.WIDTH - edge, placement.HEIGHT - edge), 0),
-             ("VMOT", (168.0, 20.5, 184.5, 97.5), 1)]
+    areas = [
+        ("GND", (edge, edge, left - 0.05, placement.HEIGHT - edge), 0),
+        ("MGND", (right + 0.05, edge, placement.WIDTH - edge, placement.HEIGHT - edge), 0),
+        ("VMOT", (168.0, 20.5, 184.5, 97.5), 1),
+    ]
     for net, box, priority in areas:
         for layer in (pcbnew.F_Cu, pcbnew.B_Cu):
             if net == "VMOT" and layer == pcbnew.F_Cu:
@@ -239,15 +267,27 @@ def _pours(board: Any) -> None:
 def _stitch(board: Any) -> None:
     """Join the two sides of each ground with vias wherever both have copper."""
     pitch, ring = 7.0, 0.75
-    around = [(0.0, 0.0), (ring, 0.0), (-ring, 0.0), (0.0, ring), (0.0, -ring),
-              (0.55, 0.55), (0.55, -0.55), (-0.55, 0.55), (-0.55, -0.55)]
+    around = [
+        (0.0, 0.0),
+        (ring, 0.0),
+        (-ring, 0.0),
+        (0.0, ring),
+        (0.0, -ring),
+        (0.55, 0.55),
+        (0.55, -0.55),
+        (-0.55, 0.55),
+        (-0.55, -0.55),
+    ]
     for net in ("GND", "MGND"):
         zones = [zone for zone in board.Zones() if zone.GetNetname() == net]
         for column in range(int(placement.WIDTH / pitch)):
             for row in range(int(placement.HEIGHT / pitch)):
                 x, y = pitch * (column + 0.5), pitch * (row + 0.5)
-                if all(zone.HitTestFilledArea(zone.GetFirstLayer(), at(x + dx, y + dy), 0)
-                       for zone in zones for dx, dy in around):
+                if all(
+                    zone.HitTestFilledArea(zone.GetFirstLayer(), at(x + dx, y + dy), 0)
+                    for zone in zones
+                    for dx, dy in around
+                ):
                     via = pcbnew.PCB_VIA(board)
                     via.SetPosition(at(x, y))
                     via.SetWidth(pcbnew.FromMM(0.8))

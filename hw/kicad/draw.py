@@ -24,16 +24,23 @@ NOTES = [
     ("Tornillo control board", (20, 22), 4.0),
     ("Logic side (GND): controller, USB, panel, programming.", (20, 28), 1.8),
     ("Machine side (MGND): supply, motors, switches, contact sensor, outputs.", (20, 32), 1.8),
-    ("Only the opto-couplers U5, U6, U7, U10, U11 and the converter U4 bridge the\n"
-     "5 mm gap between them. Nets of one name are one net on all sheets.", (20, 39), 1.8),
+    (
+        "Only the opto-couplers U5, U6, U7, U10, U11 and the converter U4 bridge the\n"
+        "5 mm gap between them. Nets of one name are one net on all sheets.",
+        (20, 39),
+        1.8,
+    ),
 ]
 
 
 def twice(sheets: list[Sheet]) -> list[str]:
     """Return a line for each unit of a part that is drawn more than once."""
     drawn = Counter((part.ref, part.unit) for sheet in sheets for part in sheet.parts)
-    return [f"{ref} unit {unit} is drawn {count} times"
-            for (ref, unit), count in drawn.items() if count > 1]
+    return [
+        f"{ref} unit {unit} is drawn {count} times"
+        for (ref, unit), count in drawn.items()
+        if count > 1
+    ]
 
 
 def main(arguments: list[str]) -> int:

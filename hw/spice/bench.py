@@ -29,8 +29,13 @@ def parameters(text: str) -> dict[str, str]:
     return dict(re.findall(r"(\w+)=([-\w.]+)", line.group(1)))
 
 
-def simulate(name: str, *, waves: tuple[str, ...] = (), start: float = 0.0,
-             **changed: float) -> tuple[Result, list[list[float]]]:
+def simulate(
+    name: str,
+    changed: dict[str, float] | None = None,
+    *,
+    waves: tuple[str, ...] = (),
+    start: float = 0.0,
+) -> tuple[Result, list[list[float]]]:
     """Run hw/spice/NAME.cir with changed parameters.
 
     waves are vectors to return, sampled at the bench's own time steps: the
@@ -39,6 +44,7 @@ def simulate(name: str, *, waves: tuple[str, ...] = (), start: float = 0.0,
     """
     text = (HERE / f"{name}.cir").read_text(encoding="utf-8")
     values = parameters(text)
+    changed = changed or {}
     unknown = set(changed) - set(values)
     if unknown:
         raise ValueError(f"{name} has no parameter {', '.join(sorted(unknown))}")
@@ -49,18 +55,27 @@ def simulate(name: str, *, waves: tuple[str, ...] = (), start: float = 0.0,
     with tempfile.TemporaryDirectory() as folder:
         table = Path(folder) / "waves.txt"
         if waves:
-            text = text.replace("\nrun\n", f"\nset wr_singlescale\nrun\n"
-                                f"wrdata {table} {' '.join(waves)}\n", 1)
+            text = text.replace(
+                "\nrun\n", f"\nset wr_singlescale\nrun\nwrdata {table} {' '.join(waves)}\n", 1
+            )
         source = Path(folder) / f"{name}.cir"
-        source.write_text(text.replace(".include models.lib", f".include {HERE}/models.lib"),
-                          encoding="utf-8")
-        done = subprocess.run(["ngspice", "-b", str(source)], capture_output=True, text=True,
-                              check=False)
+        source.write_text(
+            text.replace(".include models.lib", f".include {HERE}/models.lib"), encoding="utf-8"
+        )
+        done = subprocess.run(
+            ["ngspice", "-b", str(source)], capture_output=True, text=True, check=False
+        )
         printed = {key: float(value) for key, value in PRINTED.findall(done.stdout)}
         if not printed:
             raise RuntimeError(f"{name}: ngspice printed no result\n{done.stderr[-800:]}")
-        rows = [[float(word) for word in row.split()] for row in
-                table.read_text(encoding="utf-8").splitlines()] if waves else []
+        rows = (
+            [
+                [float(word) for word in row.split()]
+                for row in table.read_text(encoding="utf-8").splitlines()
+            ]
+            if waves
+            else []
+        )
     failed = re.search(r"^FAIL: (.*)$", done.stdout, re.MULTILINE)
     complaint = failed.group(1) if failed else ("" if done.returncode == 0 else "ngspice failed")
     return Result(printed, complaint), [row for row in rows if row[0] >= start]

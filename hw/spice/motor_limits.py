@@ -47,7 +47,7 @@ class Motor:
     @property
     def torque_constant(self) -> float:
         """N m for each ampere of one phase."""
-        return self.holding_torque / (np.sqrt(2) * self.rated_current)
+        return self.holding_torque / (2**0.5 * self.rated_current)
 
 
 def follows(motor: Motor, rates: Any, *, ramp_steps: int) -> Any:
@@ -100,16 +100,21 @@ def limits() -> dict[str, Any]:
         "5 V, MOSFET": motor,
         "5 V, TIP120 as in the thesis": replace(motor, driver_loss=0.8),
     }
-    speeds = {name: {"pull_in": highest(each, ramp_steps=0),
-                     "pull_out": highest(each, ramp_steps=400)}
-              for name, each in drivers.items()}
+    speeds = {
+        name: {"pull_in": highest(each, ramp_steps=0), "pull_out": highest(each, ramp_steps=400)}
+        for name, each in drivers.items()
+    }
     chosen = next(iter(speeds.values()))
     return {
         "pull_in_steps_per_s": chosen["pull_in"],
         "pull_out_steps_per_s": chosen["pull_out"],
-        "assumed": {"inductance_h": motor.inductance, "resistance_ohm": motor.resistance,
-                    "holding_torque_nm": motor.holding_torque, "inertia_kg_m2": motor.inertia,
-                    "friction_nm": motor.friction},
+        "assumed": {
+            "inductance_h": motor.inductance,
+            "resistance_ohm": motor.resistance,
+            "holding_torque_nm": motor.holding_torque,
+            "inertia_kg_m2": motor.inertia,
+            "friction_nm": motor.friction,
+        },
         "by_driver": speeds,
     }
 

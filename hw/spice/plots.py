@@ -13,13 +13,27 @@ from bench import Result, simulate
 
 matplotlib: Any = importlib.import_module("matplotlib")
 matplotlib.use("svg")
-matplotlib.rcParams.update({"svg.hashsalt": "tornillo", "font.size": 9, "axes.grid": True,
-                            "grid.alpha": 0.4, "savefig.bbox": "tight"})
+matplotlib.rcParams.update(
+    {
+        "svg.hashsalt": "tornillo",
+        "font.size": 9,
+        "axes.grid": True,
+        "grid.alpha": 0.4,
+        "savefig.bbox": "tight",
+    }
+)
 pyplot: Any = importlib.import_module("matplotlib.pyplot")
 
-SWITCHED = {"MOSFET, 18 V clamp, 12 V and ballast": {},
-            "MOSFET, plain diode, 5 V": {"vm": 5.0, "ballast": 0.001, "vz": 0.01},
-            "TIP120, plain diode, 5 V": {"vm": 5.0, "ballast": 0.001, "vz": 0.01, "stage": 0.0}}
+SWITCHED: dict[str, dict[str, float]] = {
+    "MOSFET, 18 V clamp, 12 V and ballast": {},
+    "MOSFET, plain diode, 5 V": {"vm": 5.0, "ballast": 0.001, "vz": 0.01},
+    "TIP120, plain diode, 5 V": {"vm": 5.0, "ballast": 0.001, "vz": 0.01, "stage": 0.0},
+}
+
+COUPLERS: dict[str, dict[str, float]] = {
+    "typical": {},
+    "slowest": {"tf": 40e-9, "cbc": 20e-12, "trmax": 22.0, "tfmax": 22.0},
+}
 
 
 def save(figure: Any, target: Path) -> None:
@@ -36,8 +50,9 @@ def winding_waves(folder: Path) -> None:
     """Draw current and drain voltage of one winding at 800 steps/s."""
     figure, (upper, lower) = pyplot.subplots(2, 1, figsize=(7, 5), sharex=True)
     for name, changed in SWITCHED.items():
-        _, rows = simulate("winding", waves=("v(d1)", "i(L1)", "i(L2)"), start=0.02, rate=800.0,
-                           **changed)
+        _, rows = simulate(
+            "winding", {"rate": 800.0, **changed}, waves=("v(d1)", "i(L1)", "i(L2)"), start=0.02
+        )
         times = [(row[0] - 0.02) * 1e3 for row in rows]
         upper.plot(times, [row[2] + row[3] for row in rows], label=name)
         lower.plot(times, _column(rows, 1), label=name)
@@ -54,10 +69,15 @@ def winding_sweep(folder: Path, rows: list[tuple[str, float, Result]]) -> None:
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.6))
     for name in dict.fromkeys(name for name, _, _ in rows):
         rates = [rate for n, rate, _ in rows if n == name]
-        left.plot(rates, [r.values["irms"] for n, _, r in rows if n == name], marker="o",
-                  label=name)
-        right.plot(rates, [r.values["ptransistor"] * 1e3 for n, _, r in rows if n == name],
-                   marker="o", label=name)
+        left.plot(
+            rates, [r.values["irms"] for n, _, r in rows if n == name], marker="o", label=name
+        )
+        right.plot(
+            rates,
+            [r.values["ptransistor"] * 1e3 for n, _, r in rows if n == name],
+            marker="o",
+            label=name,
+        )
     left.set_ylabel("effective phase current, A")
     right.set_ylabel("loss in one transistor, mW")
     right.set_yscale("log")
@@ -85,9 +105,8 @@ def clamp_choice(folder: Path, clamps: list[tuple[float, Result]]) -> None:
 def opto_waves(folder: Path) -> None:
     """Draw the coupler's switching in the board's circuit."""
     figure, axis = pyplot.subplots(figsize=(7, 3.2))
-    for name, changed in (("typical", {}), ("slowest", {"tf": 40e-9, "cbc": 20e-12,
-                                                       "trmax": 22.0, "tfmax": 22.0})):
-        _, rows = simulate("opto", waves=("v(off)",), **changed)
+    for name, changed in COUPLERS.items():
+        _, rows = simulate("opto", changed, waves=("v(off)",))
         axis.plot(_column(rows, 0, 1e6), _column(rows, 1), label=name)
     axis.axvspan(20, 1020, color="0.92", label="pin high")
     axis.axhline(3.5, color="k", linestyle=":")
@@ -103,8 +122,11 @@ def input_waves(folder: Path) -> None:
     """Draw the limit filter: a 10 us pulse and a real press."""
     figure, axis = pyplot.subplots(figsize=(7, 3.2))
     _, rows = simulate("inputs", waves=("v(na)", "v(nb)", "v(nc)"))
-    for index, name in ((1, "closed contact, opens for 10 us"),
-                        (2, "open contact, spike of 10 us"), (3, "switch pressed for good")):
+    for index, name in (
+        (1, "closed contact, opens for 10 us"),
+        (2, "open contact, spike of 10 us"),
+        (3, "switch pressed for good"),
+    ):
         axis.plot([row[0] * 1e3 - 1 for row in rows], _column(rows, index), label=name)
     axis.axhspan(1.9, 3.5, color="0.92", label="thresholds of the 74HC14")
     axis.set_xlim(-0.2, 1.5)
@@ -119,8 +141,12 @@ def power_waves(folder: Path) -> None:
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.4))
     _, rows = simulate("power", waves=("v(vdd)", "v(iso)", "v(ovdd)", "v(mclr)"))
     times = _column(rows, 0, 1e3)
-    for index, name in ((1, "+5V, USB takes over"), (2, "V5ISO"), (3, "+5V, nothing left"),
-                        (4, "MCLR")):
+    for index, name in (
+        (1, "+5V, USB takes over"),
+        (2, "V5ISO"),
+        (3, "+5V, nothing left"),
+        (4, "MCLR"),
+    ):
         left.plot(times, _column(rows, index), label=name)
     left.axhline(4.33, color="k", linestyle=":")
     left.set_xlim(0, 12)
@@ -128,8 +154,12 @@ def power_waves(folder: Path) -> None:
     left.set_ylabel("V")
     left.legend(fontsize=7)
     _, rows = simulate("power", waves=("v(vmot)", "v(sense)", "v(vmot2)", "v(sense2)"))
-    for index, name in ((1, "VMOT, windings off"), (2, "sense, windings off"),
-                        (3, "VMOT, a winding on"), (4, "sense, a winding on")):
+    for index, name in (
+        (1, "VMOT, windings off"),
+        (2, "sense, windings off"),
+        (3, "VMOT, a winding on"),
+        (4, "sense, a winding on"),
+    ):
         right.plot(_column(rows, 0, 1e3), _column(rows, index), label=name)
     right.set_xscale("log")
     right.set_xlim(1, 1500)
@@ -138,55 +168,112 @@ def power_waves(folder: Path) -> None:
     save(figure, folder / "power.svg")
 
 
-def figures(rows: list[tuple[str, float, Result]], clamps: list[tuple[float, Result]],
-            bare: Result, pulses: list[tuple[float, Result]],
-            optos: list[tuple[str, Result]], power: list[tuple[str, Result]]) -> str:
+def figures(
+    rows: list[tuple[str, float, Result]],
+    clamps: list[tuple[float, Result]],
+    bare: Result,
+    pulses: list[tuple[float, Result]],
+    optos: list[tuple[str, Result]],
+    power: list[tuple[str, Result]],
+) -> str:
     """Return the figures of all benches as Markdown tables."""
-    out = ["# Spice figures", "", "Written by `make hw-plots` from the benches in `hw/spice/`; "
-           "[spice.md](spice.md) explains them.", "", "## Winding driver", "",
-           "| driver | steps/s | peak at drain V | peak current A | effective phase current A | "
-           "own winding to 10 % us | reversal to 50 % us | transistor mW | clamp mW |",
-           "|---|---|---|---|---|---|---|---|---|"]
+    out = [
+        "# Spice figures",
+        "",
+        "Written by `make hw-plots` from the benches in `hw/spice/`; "
+        "[spice.md](spice.md) explains them.",
+        "",
+        "## Winding driver",
+        "",
+        "| driver | steps/s | peak at drain V | peak current A | effective phase current A | "
+        "own winding to 10 % us | reversal to 50 % us | transistor mW | clamp mW |",
+        "|---|---|---|---|---|---|---|---|---|",
+    ]
     for name, rate, result in rows:
         v = result.values
-        out.append(f"| {name} | {rate:g} | {v['vpeak']:.1f} | {v['ipeak']:.2f} | "
-                   f"{v['irms']:.2f} | {_time(v.get('decay'))} | "
-                   f"{_time(v.get('reversal'))} | "
-                   f"{v['ptransistor'] * 1e3:.0f} | {v['pclamp'] * 1e3:.0f} |")
-    out += ["", "## Clamp, halves loosely coupled (k = 0.3), 12 V and ballast, 800 steps/s", "",
-            "| clamp V | peak at drain V | decay to 10 % us | clamp mW |", "|---|---|---|---|"]
-    out += [f"| {volts:g} | {r.values['vpeak']:.1f} | {r.values['decay'] * 1e6:.0f} | "
-            f"{r.values['pclamp'] * 1e3:.0f} |" for volts, r in clamps]
-    out += ["", f"Without any diode (the thesis' circuit): {bare.values['vpeak']:.0f} V at a part "
-            "rated 60 V.", "", "## Opto-coupler", "",
-            "| case | rise at 100 ohm us | fall us | on us | off us | difference us |",
-            "|---|---|---|---|---|---|"]
-    out += [f"| {name} | " + " | ".join(f"{r.values[key] * 1e6:.1f}" for key in
-                                        ("trise", "tfall", "ton", "toff", "skew")) + " |"
-            for name, r in optos]
-    out += ["", "## Input filters", "", "| pulse us | closed limit contact rises to V | "
-            "open one falls to V | index falls to V | index rises to V |", "|---|---|---|---|---|"]
-    out += [f"| {us:g} | " + " | ".join(f"{r.values[key]:.2f}" for key in
-                                        ("opening", "closing", "noindex", "inindex")) + " |"
-            for us, r in pulses]
+        out.append(
+            f"| {name} | {rate:g} | {v['vpeak']:.1f} | {v['ipeak']:.2f} | "
+            f"{v['irms']:.2f} | {_time(v.get('decay'))} | "
+            f"{_time(v.get('reversal'))} | "
+            f"{v['ptransistor'] * 1e3:.0f} | {v['pclamp'] * 1e3:.0f} |"
+        )
+    out += [
+        "",
+        "## Clamp, halves loosely coupled (k = 0.3), 12 V and ballast, 800 steps/s",
+        "",
+        "| clamp V | peak at drain V | decay to 10 % us | clamp mW |",
+        "|---|---|---|---|",
+    ]
+    out += [
+        f"| {volts:g} | {r.values['vpeak']:.1f} | {r.values['decay'] * 1e6:.0f} | "
+        f"{r.values['pclamp'] * 1e3:.0f} |"
+        for volts, r in clamps
+    ]
+    out += [
+        "",
+        f"Without any diode (the thesis' circuit): {bare.values['vpeak']:.0f} V at a part "
+        "rated 60 V.",
+        "",
+        "## Opto-coupler",
+        "",
+        "| case | rise at 100 ohm us | fall us | on us | off us | difference us |",
+        "|---|---|---|---|---|---|",
+    ]
+    out += [
+        f"| {name} | "
+        + " | ".join(
+            f"{r.values[key] * 1e6:.1f}" for key in ("trise", "tfall", "ton", "toff", "skew")
+        )
+        + " |"
+        for name, r in optos
+    ]
+    out += [
+        "",
+        "## Input filters",
+        "",
+        "| pulse us | closed limit contact rises to V | "
+        "open one falls to V | index falls to V | index rises to V |",
+        "|---|---|---|---|---|",
+    ]
+    out += [
+        f"| {us:g} | "
+        + " | ".join(f"{r.values[key]:.2f}" for key in ("opening", "closing", "noindex", "inindex"))
+        + " |"
+        for us, r in pulses
+    ]
     last = pulses[-1][1].values
-    out += ["", f"A real press is seen after {last['pressed'] * 1e6:.0f} us, a tool contact after "
-            f"{last['contact'] * 1e6:.0f} us. Mains of 230 V between tool and frame drives "
-            f"{last['imax'] * 1e3:.1f} mA at its peak, {last['pseries']:.2f} W in each of R57 and "
-            "R58.", "", "## Supply, reset, emergency stop", "",
-            "| supply | +5V from converter | lowest while USB takes over | lost at 5 A in Q4 | "
-            "stop seen, windings off | stop seen, one on | hold-up without supply |",
-            "|---|---|---|---|---|---|---|"]
+    out += [
+        "",
+        f"A real press is seen after {last['pressed'] * 1e6:.0f} us, a tool contact after "
+        f"{last['contact'] * 1e6:.0f} us. Mains of 230 V between tool and frame drives "
+        f"{last['imax'] * 1e3:.1f} mA at its peak, {last['pseries']:.2f} W in each of R57 and "
+        "R58.",
+        "",
+        "## Supply, reset, emergency stop",
+        "",
+        "| supply | +5V from converter | lowest while USB takes over | lost at 5 A in Q4 | "
+        "stop seen, windings off | stop seen, one on | hold-up without supply |",
+        "|---|---|---|---|---|---|---|",
+    ]
     for name, result in power:
         v = result.values
-        out.append(f"| {name} | {v['vddext']:.2f} V | {v['vddusb']:.2f} V | "
-                   f"{abs(v['vq4']) * 1e3:.0f} mV | {v['tstop'] * 1e3:.0f} ms | "
-                   f"{v['tstopon'] * 1e3:.1f} ms | {v['holdup'] * 1e6:.0f} us |")
-    out += ["", "## Motor limits", "", "| driver and load | pull-in steps/s | pull-out steps/s |",
-            "|---|---|---|"]
+        out.append(
+            f"| {name} | {v['vddext']:.2f} V | {v['vddusb']:.2f} V | "
+            f"{abs(v['vq4']) * 1e3:.0f} mV | {v['tstop'] * 1e3:.0f} ms | "
+            f"{v['tstopon'] * 1e3:.1f} ms | {v['holdup'] * 1e6:.0f} us |"
+        )
+    out += [
+        "",
+        "## Motor limits",
+        "",
+        "| driver and load | pull-in steps/s | pull-out steps/s |",
+        "|---|---|---|",
+    ]
     limits = json.loads(motor_limits.committed().read_text(encoding="utf-8"))
-    out += [f"| {name} | {speed['pull_in']} | {speed['pull_out']} |"
-            for name, speed in limits["by_driver"].items()]
+    out += [
+        f"| {name} | {speed['pull_in']} | {speed['pull_out']} |"
+        for name, speed in limits["by_driver"].items()
+    ]
     return "\n".join(out) + "\n"
 
 
@@ -194,10 +281,15 @@ def _time(seconds: float | None) -> str:
     return "not reached" if seconds is None else f"{seconds * 1e6:.0f}"
 
 
-def write(folder: Path, rows: list[tuple[str, float, Result]],
-          clamps: list[tuple[float, Result]], bare: Result,
-          pulses: list[tuple[float, Result]], optos: list[tuple[str, Result]],
-          power: list[tuple[str, Result]]) -> None:
+def write(
+    folder: Path,
+    rows: list[tuple[str, float, Result]],
+    clamps: list[tuple[float, Result]],
+    bare: Result,
+    pulses: list[tuple[float, Result]],
+    optos: list[tuple[str, Result]],
+    power: list[tuple[str, Result]],
+) -> None:
     """Write all pictures and figures.md into a folder."""
     winding_waves(folder)
     winding_sweep(folder, rows)
@@ -205,5 +297,6 @@ def write(folder: Path, rows: list[tuple[str, float, Result]],
     opto_waves(folder)
     input_waves(folder)
     power_waves(folder)
-    (folder / "figures.md").write_text(figures(rows, clamps, bare, pulses, optos, power),
-                                       encoding="utf-8")
+    (folder / "figures.md").write_text(
+        figures(rows, clamps, bare, pulses, optos, power), encoding="utf-8"
+    )

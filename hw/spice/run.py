@@ -40,14 +40,13 @@ def winding(rate: float, **changed: float) -> Result:
     magnetises the core has reached half its final value. Each is missing when
     it does not happen while the winding is off, or on.
     """
-    result, rows = simulate("winding", waves=("i(L1)", "i(L2)"), rate=rate, **changed)
+    result, rows = simulate("winding", {"rate": rate, **changed}, waves=("i(L1)", "i(L2)"))
     values = {"vm": 12.0, "r": 5.0, "ballast": 3.3, **changed}
     final = values["vm"] / (values["r"] + values["ballast"])
     off, on = 18 / rate, 20 / rate
     before = [row[1] for row in rows if off - 0.1 / rate < row[0] < off]
     gone = [row[0] for row in rows if row[0] > off and row[1] < 0.1 * max(before)]
-    come = [row[0] for row in rows if on < row[0] < on + 2 / rate
-            and row[1] + row[2] > 0.5 * final]
+    come = [row[0] for row in rows if on < row[0] < on + 2 / rate and row[1] + row[2] > 0.5 * final]
     extra = {}
     if gone:
         extra["decay"] = gone[0] - off
@@ -58,8 +57,11 @@ def winding(rate: float, **changed: float) -> Result:
 
 def winding_sweep() -> Rows:
     """Run every driver at every rate."""
-    return [(name, float(rate), winding(rate, **changed))
-            for name, changed in DRIVERS.items() for rate in RATES]
+    return [
+        (name, float(rate), winding(rate, **changed))
+        for name, changed in DRIVERS.items()
+        for rate in RATES
+    ]
 
 
 def clamp_sweep() -> list[tuple[float, Result]]:
@@ -69,12 +71,14 @@ def clamp_sweep() -> list[tuple[float, Result]]:
 
 def without_diode() -> Result:
     """Run the thesis' circuit: TIP120 and no free-wheel diode; it must fail."""
-    return simulate("winding", vm=5, ballast=0.001, vz=0.01, stage=0, diode=0, **LOOSE)[0]
+    return simulate(
+        "winding", {"vm": 5, "ballast": 0.001, "vz": 0.01, "stage": 0, "diode": 0, **LOOSE}
+    )[0]
 
 
 def input_pulses() -> list[tuple[float, Result]]:
     """Run the input filters with pulses of 1 to 10 us."""
-    return [(us, simulate("inputs", width=us * 1e-6)[0]) for us in (1.0, 2.0, 5.0, 10.0)]
+    return [(us, simulate("inputs", {"width": us * 1e-6})[0]) for us in (1.0, 2.0, 5.0, 10.0)]
 
 
 OPTOS: dict[str, dict[str, float]] = {
@@ -87,21 +91,25 @@ OPTOS: dict[str, dict[str, float]] = {
 
 def opto_cases() -> list[tuple[str, Result]]:
     """Run the coupler's bench over the spread of the data sheet."""
-    return [(name, simulate("opto", **changed)[0]) for name, changed in OPTOS.items()]
+    return [(name, simulate("opto", changed)[0]) for name, changed in OPTOS.items()]
 
 
 def power_cases() -> list[tuple[str, Result]]:
     """Run the supply bench at both ends of the supply range."""
-    return [(f"{volts:g} V", simulate("power", vsup=volts)[0]) for volts in (5.0, 12.0)]
+    return [(f"{volts:g} V", simulate("power", {"vsup": volts})[0]) for volts in (5.0, 12.0)]
 
 
 def complaints(rows: Rows) -> list[str]:
     """Return what the winding sweep says against the chosen driver."""
-    found = [f"{name} at {rate:g} steps/s: {result.complaint}"
-             for name, rate, result in rows if result.complaint]
+    names = list(DRIVERS)[:: len(DRIVERS) - 1]
+    found = [
+        f"{name} at {rate:g} steps/s: {result.complaint}"
+        for name, rate, result in rows
+        if result.complaint
+    ]
     for rate in RATES:
         at = {name: result.values for name, r, result in rows if r == rate}
-        chosen, thesis = (at[name] for name in (list(DRIVERS)[0], list(DRIVERS)[-1]))
+        chosen, thesis = (at[name] for name in names)
         if chosen["ptransistor"] > 0.5:
             found.append(f"the MOSFET loses more than 0.5 W at {rate} steps/s")
         if chosen["irms"] < thesis["irms"]:
@@ -123,19 +131,22 @@ def main(arguments: list[str]) -> int:
     kept = motor_limits.committed()
     benches = {
         "winding": complaints(rows),
-        "clamp": [f"{volts:g} V: {result.complaint}" for volts, result in clamps
-                  if result.complaint],
+        "clamp": [
+            f"{volts:g} V: {result.complaint}" for volts, result in clamps if result.complaint
+        ],
         "no diode": [] if bare.complaint else ["the bench did not see the missing diode"],
         "inputs": [f"{us:g} us: {result.complaint}" for us, result in pulses if result.complaint],
         "opto": [f"{name}: {result.complaint}" for name, result in optos if result.complaint],
         "power": [f"{name}: {result.complaint}" for name, result in power if result.complaint],
-        "motor limits": [] if kept.is_file() and kept.read_text(encoding="utf-8") == limits
+        "motor limits": []
+        if kept.is_file() and kept.read_text(encoding="utf-8") == limits
         else ["motor_limits.json is not what the calculation gives: run.py --update"],
     }
     for name, found in benches.items():
         print(f"{name}: {'; '.join(found) or 'ok'}")
     if wanted.plots:
         import plots
+
         plots.write(wanted.plots, rows, clamps, bare, pulses, optos, power)
     return 1 if any(benches.values()) else 0
 

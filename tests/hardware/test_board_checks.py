@@ -4,32 +4,10 @@
 from __future__ import annotations
 
 import re
-from typing import Protocol
+
+from hardware.spoiled_board import Board
 
 PROJECT = "hw/kicad/tornillo"
-
-
-class Verdict(Protocol):
-    """What conftest.Board.check returns."""
-
-    status: int
-    output: str
-
-    def failed(self, check: str) -> bool: ...
-
-
-class Board(Protocol):
-    """What the fixture board offers."""
-
-    def edit(self, name: str, old: str, new: str, count: int = -1) -> None: ...
-
-    def draw(self) -> None: ...
-
-    def check(self, *names: str) -> Verdict: ...
-
-    def make(self, target: str) -> Verdict: ...
-
-    def read(self, name: str) -> str: ...
 
 
 def test_the_committed_board_passes_all_checks_but_the_long_spice_runs(board: Board) -> None:
@@ -49,9 +27,12 @@ def test_swapped_usb_lines_make_the_board_target_fail(board: Board) -> None:
 
 
 def test_a_missing_free_wheel_diode_is_found(board: Board) -> None:
-    board.edit("hw/kicad/design/motor.py", '    sheet.wire(f"{transistor}.2", (162, row - 4)',
-               '    if phase == 1:\n        sheet.parts.pop()\n        return\n'
-               '    sheet.wire(f"{transistor}.2", (162, row - 4)')
+    board.edit(
+        "hw/kicad/design/motor.py",
+        '    sheet.wire(f"{transistor}.2", (162, row - 4)',
+        "    if phase == 1:\n        sheet.parts.pop()\n        return\n"
+        '    sheet.wire(f"{transistor}.2", (162, row - 4)',
+    )
     board.draw()
     verdict = board.check("nets", "drc")
     assert verdict.failed("nets")
@@ -60,8 +41,11 @@ def test_a_missing_free_wheel_diode_is_found(board: Board) -> None:
 
 
 def test_a_wire_on_the_wrong_pin_of_the_chip_is_found(board: Board) -> None:
-    board.edit("hw/kicad/design/controller.py", '"37": "LIMIT_X", "38": "LIMIT_Z"',
-               '"37": "LIMIT_Z", "38": "LIMIT_X"')
+    board.edit(
+        "hw/kicad/design/controller.py",
+        '"37": "LIMIT_X", "38": "LIMIT_Z"',
+        '"37": "LIMIT_Z", "38": "LIMIT_X"',
+    )
     board.draw()
     verdict = board.check("nets")
     assert "board.h has LIMIT_X on RB4, pin 37; the board has LIMIT_Z there" in verdict.output
@@ -96,10 +80,13 @@ def test_a_thinned_winding_track_is_found(board: Board) -> None:
 def test_copper_in_the_isolation_gap_is_found(board: Board) -> None:
     net = re.search(r'\(net (\d+) "GND"\)', board.read(f"{PROJECT}.kicad_pcb"))
     assert net is not None
-    board.edit(f"{PROJECT}.kicad_pcb", "\t(segment",
-               '\t(segment (start 139 89) (end 143 89) (width 0.3) (layer "F.Cu") '
-               f'(net {net[1]}) (uuid "00000000-0000-0000-0000-000000000001"))\n\t(segment',
-               count=1)
+    board.edit(
+        f"{PROJECT}.kicad_pcb",
+        "\t(segment",
+        '\t(segment (start 139 89) (end 143 89) (width 0.3) (layer "F.Cu") '
+        f'(net {net[1]}) (uuid "00000000-0000-0000-0000-000000000001"))\n\t(segment',
+        count=1,
+    )
     verdict = board.check("drc")
     assert "isolation gap" in verdict.output
 
@@ -125,8 +112,9 @@ def test_a_loose_wire_is_found(board: Board) -> None:
 
 
 def test_texts_on_each_other_stop_the_drawing(board: Board) -> None:
-    board.edit("hw/kicad/design/panel.py", '"Panel connector", (94, 96)',
-               '"Panel connector", (112, 112)')
+    board.edit(
+        "hw/kicad/design/panel.py", '"Panel connector", (94, 96)', '"Panel connector", (112, 112)'
+    )
     verdict = board.check("generated")
     assert "Panel connector" in verdict.output
 

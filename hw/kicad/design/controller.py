@@ -5,23 +5,64 @@ from design import footprints as fp
 from design.parts import capacitor, electrolytic, ground, led, resistor, supply
 from design.sheet import Sheet
 
-LEFT = {"2": "KEY_LADDER", "3": "PROBE", "4": "LCD_D4", "5": "LCD_D5", "6": "LCD_D6",
-        "7": "LCD_D7", "33": "COIL_Z1", "34": "COIL_Z2", "35": "COIL_Z3", "36": "COIL_Z4",
-        "37": "LIMIT_X", "38": "LIMIT_Z", "39": "VBUS_SENSE", "40": "PGD"}
-RIGHT = {"15": "LED_STATUS", "16": "SPARE_RC1", "17": "SPINDLE_INDEX", "23": "USB_DM",
-         "24": "USB_DP", "25": "SPINDLE_RELAY", "26": "COOLANT_RELAY", "19": "COIL_X1",
-         "20": "COIL_X2", "21": "COIL_X3", "22": "COIL_X4", "27": "BUTTON_RUN",
-         "28": "BUTTON_HOLD", "29": "BUTTON_STOP", "30": "ESTOP_SENSE", "8": "LCD_RS",
-         "9": "LCD_E", "10": "SPARE_RE2", "1": "MCLR"}
+LEFT = {
+    "2": "KEY_LADDER",
+    "3": "PROBE",
+    "4": "LCD_D4",
+    "5": "LCD_D5",
+    "6": "LCD_D6",
+    "7": "LCD_D7",
+    "33": "COIL_Z1",
+    "34": "COIL_Z2",
+    "35": "COIL_Z3",
+    "36": "COIL_Z4",
+    "37": "LIMIT_X",
+    "38": "LIMIT_Z",
+    "39": "VBUS_SENSE",
+    "40": "PGD",
+}
+RIGHT = {
+    "15": "LED_STATUS",
+    "16": "SPARE_RC1",
+    "17": "SPINDLE_INDEX",
+    "23": "USB_DM",
+    "24": "USB_DP",
+    "25": "SPINDLE_RELAY",
+    "26": "COOLANT_RELAY",
+    "19": "COIL_X1",
+    "20": "COIL_X2",
+    "21": "COIL_X3",
+    "22": "COIL_X4",
+    "27": "BUTTON_RUN",
+    "28": "BUTTON_HOLD",
+    "29": "BUTTON_STOP",
+    "30": "ESTOP_SENSE",
+    "8": "LCD_RS",
+    "9": "LCD_E",
+    "10": "SPARE_RE2",
+    "1": "MCLR",
+}
 
 
 def draw() -> Sheet:
     """Return the sheet."""
-    sheet = Sheet("controller", "Controller and USB", "A3", 2,
-                  "PIC18F4550, 20 MHz crystal, USB with ESD protection, VBUS sense",
-                  "PIC18F4550, 20 MHz, USB, VBUS sense\nR1-R8, C1-C8, D1, Q1, Q2, J1, Y1")
-    sheet.place("U1", "MCU_Microchip_PIC18:PIC18F4550-IP", "PIC18F4550-I/P", (165, 90),
-                footprint=fp.DIP40, ref_at=(8, -27.5, "left"), value_at=(8, 27.5, "left"))
+    sheet = Sheet(
+        "controller",
+        "Controller and USB",
+        "A3",
+        2,
+        "PIC18F4550, 20 MHz crystal, USB with ESD protection, VBUS sense",
+        "PIC18F4550, 20 MHz, USB, VBUS sense\nR1-R8, C1-C8, D1, Q1, Q2, J1, Y1",
+    )
+    sheet.place(
+        "U1",
+        "MCU_Microchip_PIC18:PIC18F4550-IP",
+        "PIC18F4550-I/P",
+        (165, 90),
+        footprint=fp.DIP40,
+        ref_at=(8, -27.5, "left"),
+        value_at=(8, 27.5, "left"),
+    )
     for pin, net in LEFT.items():
         sheet.stub(net, f"U1.{pin}", -5)
     for pin, net in RIGHT.items():
@@ -52,17 +93,47 @@ def _supply(sheet: Sheet) -> None:
     supply(sheet, "+5V", (40, 34), 1)
     ground(sheet, "GND", (40, 46), 1)
     sheet.power("PWR_FLAG", (82, 34))
-    sheet.place("TP1", "Connector:TestPoint", "+5V", (94, 34), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
-    sheet.place("TP2", "Connector:TestPoint", "GND", (106, 46), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
+    sheet.place(
+        "TP1",
+        "Connector:TestPoint",
+        "+5V",
+        (94, 34),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
+    sheet.place(
+        "TP2",
+        "Connector:TestPoint",
+        "GND",
+        (106, 46),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
 
 
 def _clock(sheet: Sheet) -> None:
-    sheet.place("Y1", "Device:Crystal", "20MHz 18pF", (112, 82), rot=270,
-                footprint=fp.CRYSTAL, ref_at=(3, -1, "left"), value_at=(3, 1, "left"))
-    sheet.place("C1", "Device:C", "22p", (100, 79), rot=90, footprint=fp.CERAMIC,
-                ref_at=(-2.6, -2.6, "left"), value_at=(0.4, -2.6, "left"))
+    sheet.place(
+        "Y1",
+        "Device:Crystal",
+        "20MHz 18pF",
+        (112, 82),
+        rot=270,
+        footprint=fp.CRYSTAL,
+        ref_at=(3, -1, "left"),
+        value_at=(3, 1, "left"),
+    )
+    sheet.place(
+        "C1",
+        "Device:C",
+        "22p",
+        (100, 79),
+        rot=90,
+        footprint=fp.CERAMIC,
+        ref_at=(-2.6, -2.6, "left"),
+        value_at=(0.4, -2.6, "left"),
+    )
     capacitor(sheet, "C2", "22p", (100, 85), across=True)
     sheet.wire("U1.14", (128, 80), (128, 79), (112, 79), "C1.2")
     sheet.wire("U1.13", (128, 84), (128, 85), (112, 85), "C2.2")
@@ -75,13 +146,27 @@ def _clock(sheet: Sheet) -> None:
 def _usb(sheet: Sheet) -> None:
     sheet.frame((14, 136), (146, 212))
     sheet.text("USB full speed; U2 takes static discharges away from the chip", (16, 140), 1.5)
-    sheet.place("J1", "Connector:USB_B", "USB-B", (35, 172), footprint=fp.USB_B,
-                ref_at=(-4, -9.2, "left"), value_at=(-4, -7.4, "left"))
+    sheet.place(
+        "J1",
+        "Connector:USB_B",
+        "USB-B",
+        (35, 172),
+        footprint=fp.USB_B,
+        ref_at=(-4, -9.2, "left"),
+        value_at=(-4, -7.4, "left"),
+    )
     sheet.place("F1", "Device:Polyfuse", "0.5A", (56, 168), rot=90, footprint=fp.POLYFUSE)
     sheet.wire("J1.1", "F1.1")
     sheet.label("USB_5V", (42, 168))
-    sheet.place("U2", "Power_Protection:USBLC6-2SC6", "USBLC6-2SC6", (90, 172),
-                footprint=fp.SOT23_6, ref_at=(3, -5, "left"), value_at=(3, -3.2, "left"))
+    sheet.place(
+        "U2",
+        "Power_Protection:USBLC6-2SC6",
+        "USBLC6-2SC6",
+        (90, 172),
+        footprint=fp.SOT23_6,
+        ref_at=(3, -5, "left"),
+        value_at=(3, -3.2, "left"),
+    )
     sheet.wire("J1.3", "U2.1")
     sheet.wire("J1.2", "U2.3")
     sheet.label("USB_P_IN", (66, 172))
@@ -93,8 +178,15 @@ def _usb(sheet: Sheet) -> None:
     ground(sheet, "GND", "C7.2")
     supply(sheet, "VBUS", (76, 158), 1)
     sheet.power("PWR_FLAG", (128, 158))
-    sheet.place("TP4", "Connector:TestPoint", "VBUS", (104, 158), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
+    sheet.place(
+        "TP4",
+        "Connector:TestPoint",
+        "VBUS",
+        (104, 158),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
     sheet.stub("USB_DP", "U2.6", 8)
     sheet.stub("USB_DM", "U2.4", 8)
     ground(sheet, "GND", "U2.2")
@@ -146,6 +238,15 @@ def _status(sheet: Sheet) -> None:
     sheet.wire((220, 84), "C3.1")
     ground(sheet, "GND", "C3.2")
     sheet.label("VUSB", (196, 84))
-    sheet.place("TP3", "Connector:TestPoint", "VUSB", (220, 84), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
-    sheet.text("VUSB: the chip's 3.3 V for the USB pins;\nnothing else may draw from it.", (232, 90))
+    sheet.place(
+        "TP3",
+        "Connector:TestPoint",
+        "VUSB",
+        (220, 84),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
+    sheet.text(
+        "VUSB: the chip's 3.3 V for the USB pins;\nnothing else may draw from it.", (232, 90)
+    )

@@ -15,9 +15,14 @@ HEADER_PINS = ("3", "4", "5", "6", "7", "8")
 
 def draw() -> Sheet:
     """Return the sheet."""
-    sheet = Sheet("expansion", "Programming and expansion", "A4", 7,
-                  "Reset, ICSP, step and direction header, spare pins, mounting holes",
-                  "Reset, ICSP, step and direction,\nspare pins, mounting holes")
+    sheet = Sheet(
+        "expansion",
+        "Programming and expansion",
+        "A4",
+        7,
+        "Reset, ICSP, step and direction header, spare pins, mounting holes",
+        "Reset, ICSP, step and direction,\nspare pins, mounting holes",
+    )
     _reset(sheet)
     _icsp(sheet)
     _step_direction(sheet)
@@ -36,8 +41,16 @@ def _reset(sheet: Sheet) -> None:
     sheet.wire("R4.2", (58, 32))
     sheet.to_sheet("MCLR", (58, 32), 0)
     sheet.label("RESET", (36, 32))
-    sheet.place("SW1", "Switch:SW_Push", "RESET", (20, 40), rot=90, footprint=fp.BUTTON,
-                ref_at=(2, -1, "left"), value_at=(2, 1, "left"))
+    sheet.place(
+        "SW1",
+        "Switch:SW_Push",
+        "RESET",
+        (20, 40),
+        rot=90,
+        footprint=fp.BUTTON,
+        ref_at=(2, -1, "left"),
+        value_at=(2, 1, "left"),
+    )
     sheet.wire("SW1.2", (20, 32))
     ground(sheet, "GND", "SW1.1", 2)
     capacitor(sheet, "C9", "100n", (42, 39))
@@ -49,9 +62,15 @@ def _reset(sheet: Sheet) -> None:
 def _icsp(sheet: Sheet) -> None:
     sheet.frame((88, 10), (152, 62))
     sheet.text("In-circuit programming (PICkit order)", (90, 14), 1.5)
-    sheet.place("J13", "Connector_Generic:Conn_01x06", "ICSP", (138, 32),
-                footprint=fp.HEADER.format(6), ref_at=(-1, -6.4, "left"),
-                value_at=(-1, 8.6, "left"))
+    sheet.place(
+        "J13",
+        "Connector_Generic:Conn_01x06",
+        "ICSP",
+        (138, 32),
+        footprint=fp.HEADER.format(6),
+        ref_at=(-1, -6.4, "left"),
+        value_at=(-1, 8.6, "left"),
+    )
     for pin, net in (("1", "MCLR"), ("4", "PGD"), ("5", "VBUS_SENSE")):
         sheet.stub(net, f"J13.{pin}", -8)
     sheet.wire("J13.2", (120, 30), (120, 26))
@@ -65,8 +84,15 @@ def _icsp(sheet: Sheet) -> None:
 def _step_direction(sheet: Sheet) -> None:
     sheet.frame((10, 66), (152, 130))
     sheet.text("Step and direction for outside drivers; link JP1 to switch it on", (12, 70), 1.5)
-    sheet.place("U12", "74xx:74HCT541", "74HCT541", (58, 98), footprint=fp.DIP20,
-                ref_at=(2, -14.6, "left"), value_at=(2, 14.8, "left"))
+    sheet.place(
+        "U12",
+        "74xx:74HCT541",
+        "74HCT541",
+        (58, 98),
+        footprint=fp.DIP20,
+        ref_at=(2, -14.6, "left"),
+        value_at=(2, 14.8, "left"),
+    )
     for pin, net in zip(BUFFER_IN, STEP_INPUTS, strict=True):
         sheet.stub(net, f"U12.{pin}", -6)
     sheet.wire("U12.8", (46, 100), (46, 102))
@@ -80,9 +106,16 @@ def _step_direction(sheet: Sheet) -> None:
     sheet.wire("R77.2", (34, 120))
     sheet.power("+5V", (34, 120), 180)
     sheet.label("DRIVERS_OFF", (36, 108))
-    sheet.place("JP1", "Jumper:Jumper_2_Open", "DRIVERS", (26, 108), rot=180,
-                footprint=fp.HEADER.format(2), ref_at=(-4, -2.6, "left"),
-                value_at=(-4, 3.2, "left"))
+    sheet.place(
+        "JP1",
+        "Jumper:Jumper_2_Open",
+        "DRIVERS",
+        (26, 108),
+        rot=180,
+        footprint=fp.HEADER.format(2),
+        ref_at=(-4, -2.6, "left"),
+        value_at=(-4, 3.2, "left"),
+    )
     sheet.wire("JP1.2", (20, 108))
     ground(sheet, "GND", (20, 108), 2)
     supply(sheet, "+5V", "U12.20", 1)
@@ -90,8 +123,16 @@ def _step_direction(sheet: Sheet) -> None:
     sheet.nc("U12.12", "U12.11")
     for index, (pin, net, bend) in enumerate(zip(BUFFER_OUT, STEP_OUTPUTS, BENDS, strict=True)):
         ref, row = f"R{71 + index}", 82 + 4 * index
-        sheet.place(ref, "Device:R", "100", (88, row), rot=90, footprint=fp.RESISTOR,
-                    ref_at=(-3.2, -1.6, "left"), value_at=(0.4, -1.6, "left"))
+        sheet.place(
+            ref,
+            "Device:R",
+            "100",
+            (88, row),
+            rot=90,
+            footprint=fp.RESISTOR,
+            ref_at=(-3.2, -1.6, "left"),
+            value_at=(0.4, -1.6, "left"),
+        )
         start = sheet.point(f"U12.{pin}")
         sheet.wire(start, (bend, start[1]), (bend, row), f"{ref}.1")
         sheet.wire(f"{ref}.2", (96, row))
@@ -103,8 +144,15 @@ def _step_direction(sheet: Sheet) -> None:
 
 
 def _step_header(sheet: Sheet) -> None:
-    sheet.place("J14", "Connector_Generic:Conn_02x05_Odd_Even", "STEP/DIR", (126, 116),
-                footprint=fp.IDC_10, ref_at=(-1, -6.4, "left"), value_at=(-1, 6.6, "left"))
+    sheet.place(
+        "J14",
+        "Connector_Generic:Conn_02x05_Odd_Even",
+        "STEP/DIR",
+        (126, 116),
+        footprint=fp.IDC_10,
+        ref_at=(-1, -6.4, "left"),
+        value_at=(-1, 6.6, "left"),
+    )
     for pin, net in zip(HEADER_PINS, STEP_OUTPUTS, strict=True):
         step = -3 if int(pin) % 2 else 3
         sheet.wire(f"J14.{pin}", sheet.off(f"J14.{pin}", step, 0))
@@ -122,9 +170,15 @@ def _step_header(sheet: Sheet) -> None:
 def _mechanics(sheet: Sheet) -> None:
     sheet.frame((156, 10), (224, 62))
     sheet.text("Spare pins", (158, 14), 1.5)
-    sheet.place("J15", "Connector_Generic:Conn_01x04", "SPARE", (206, 30),
-                footprint=fp.HEADER.format(4), ref_at=(-1, -4.4, "left"),
-                value_at=(-1, 6.6, "left"))
+    sheet.place(
+        "J15",
+        "Connector_Generic:Conn_01x04",
+        "SPARE",
+        (206, 30),
+        footprint=fp.HEADER.format(4),
+        ref_at=(-1, -4.4, "left"),
+        value_at=(-1, 6.6, "left"),
+    )
     sheet.stub("SPARE_RC1", "J15.1", -8)
     sheet.stub("SPARE_RE2", "J15.2", -8)
     sheet.wire("J15.3", (178, 32), (178, 30))
@@ -133,5 +187,12 @@ def _mechanics(sheet: Sheet) -> None:
     ground(sheet, "GND", (190, 34), 2)
     sheet.text("M3 holes", (158, 46), 1.5)
     for index in range(4):
-        sheet.place(f"H{index + 1}", "Mechanical:MountingHole", "M3", (162 + 10 * index, 54),
-                    footprint=fp.HOLE_M3, ref_at=(-1, -3, "left"), value_at=(-1, 3, "left"))
+        sheet.place(
+            f"H{index + 1}",
+            "Mechanical:MountingHole",
+            "M3",
+            (162 + 10 * index, 54),
+            footprint=fp.HOLE_M3,
+            ref_at=(-1, -3, "left"),
+            value_at=(-1, 3, "left"),
+        )

@@ -77,29 +77,38 @@ def _flat(library: str, name: str) -> list[Any]:
             merged[-1][0] = item[0]
         else:
             merged.append(item)
-    first_unit = next(i for i, item in enumerate(merged)
-                      if isinstance(item, list) and item[0] == "symbol")
+    first_unit = next(
+        i for i, item in enumerate(merged) if isinstance(item, list) and item[0] == "symbol"
+    )
     merged[first_unit:first_unit] = list(own.values())
     return merged
 
 
 def _units(node: list[Any]) -> list[tuple[int, list[Any]]]:
-    return [(int(unit[1].rsplit("_", 2)[1]), unit) for unit in children(node, "symbol")
-            if int(unit[1].rsplit("_", 2)[2]) < 2]
+    return [
+        (int(unit[1].rsplit("_", 2)[1]), unit)
+        for unit in children(node, "symbol")
+        if int(unit[1].rsplit("_", 2)[2]) < 2
+    ]
 
 
 def _pins(node: list[Any]) -> list[Pin]:
-    return [Pin(child(pin, "number")[1], float(child(pin, "at")[1]), float(child(pin, "at")[2]),
-                unit)
-            for unit, body in _units(node) for pin in children(body, "pin")]
+    return [
+        Pin(child(pin, "number")[1], float(child(pin, "at")[1]), float(child(pin, "at")[2]), unit)
+        for unit, body in _units(node)
+        for pin in children(body, "pin")
+    ]
 
 
 def _boxes(node: list[Any]) -> dict[int, tuple[float, float, float, float]]:
     boxes: dict[int, tuple[float, float, float, float]] = {}
     for unit, body in _units(node):
-        points = [point for item in body[2:] if isinstance(item, list)
-                  and item[0] in ("rectangle", "polyline", "circle", "arc")
-                  for point in _points(item)]
+        points = [
+            point
+            for item in body[2:]
+            if isinstance(item, list) and item[0] in ("rectangle", "polyline", "circle", "arc")
+            for point in _points(item)
+        ]
         if points:
             xs, ys = [p[0] for p in points], [p[1] for p in points]
             boxes[unit] = (min(xs), min(ys), max(xs), max(ys))

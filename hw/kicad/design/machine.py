@@ -8,25 +8,54 @@ from design.sheet import Sheet
 
 def draw() -> Sheet:
     """Return the sheet."""
-    sheet = Sheet("machine", "Inputs and outputs", "A3", 5,
-                  "Everything that comes from the machine crosses the isolation gap",
-                  "Limit switches, spindle index, contact\nsensor, spindle and coolant outputs")
+    sheet = Sheet(
+        "machine",
+        "Inputs and outputs",
+        "A3",
+        5,
+        "Everything that comes from the machine crosses the isolation gap",
+        "Limit switches, spindle index, contact\nsensor, spindle and coolant outputs",
+    )
     network(sheet, "RN5", "10k", (126, 26))
     supply(sheet, "+5V", "RN5.1", 1)
     _limits(sheet)
     _index(sheet)
     _probe(sheet)
-    _output(sheet, "SPINDLE_RELAY", 40, resistors=("R51", "R53", "R55"), transistor="Q6",
-            clamp="D51", unit=1, pins=("1", "2", "8", "7"))
-    _output(sheet, "COOLANT_RELAY", 84, resistors=("R52", "R54", "R56"), transistor="Q7",
-            clamp="D52", unit=2, pins=("3", "4", "6", "5"))
+    _output(
+        sheet,
+        "SPINDLE_RELAY",
+        40,
+        resistors=("R51", "R53", "R55"),
+        transistor="Q6",
+        clamp="D51",
+        unit=1,
+        pins=("1", "2", "8", "7"),
+    )
+    _output(
+        sheet,
+        "COOLANT_RELAY",
+        84,
+        resistors=("R52", "R54", "R56"),
+        transistor="Q7",
+        clamp="D52",
+        unit=2,
+        pins=("3", "4", "6", "5"),
+    )
     _output_terminal(sheet)
     return sheet
 
 
-def _switch(sheet: Sheet, net: str, row: int, numbers: tuple[str, str, str, str], value: str,
-            gate: tuple[str, int, str, str], unit: int, pins: tuple[str, str, str, str],
-            pull_up: str) -> None:
+def _switch(
+    sheet: Sheet,
+    net: str,
+    row: int,
+    numbers: tuple[str, str, str, str],
+    value: str,
+    gate: tuple[str, int, str, str],
+    unit: int,
+    pins: tuple[str, str, str, str],
+    pull_up: str,
+) -> None:
     """Draw one filtered input: pull-up, RC, Schmitt gate, coupler."""
     up, series, cap, light = numbers
     ref, gate_unit, gate_in, gate_out = gate
@@ -35,21 +64,29 @@ def _switch(sheet: Sheet, net: str, row: int, numbers: tuple[str, str, str, str]
     supply(sheet, "+5VM", f"{up}.1", 1)
     resistor(sheet, series, "10k", (46, row), across=True)
     capacitor(sheet, cap, value, (58, row + 5))
-    sheet.wire("%s.2" % series, (58, row))
+    sheet.wire(f"{series}.2", (58, row))
     sheet.wire(f"{cap}.1", (58, row))
     ground(sheet, "MGND", f"{cap}.2", 1)
-    sheet.place(ref, "74xx:74HC14", "74HC14", (74, row), unit=gate_unit, footprint=fp.DIP14,
-                ref_at=(-2.4, -3.2, "left"), value_at=(-2, 3.2, "left"))
+    sheet.place(
+        ref,
+        "74xx:74HC14",
+        "74HC14",
+        (74, row),
+        unit=gate_unit,
+        footprint=fp.DIP14,
+        ref_at=(-2.4, -3.2, "left"),
+        value_at=(-2, 3.2, "left"),
+    )
     sheet.wire((58, row), f"{ref}.{gate_in}")
     resistor(sheet, light, "1k", (90, row), across=True)
     sheet.wire(f"{ref}.{gate_out}", f"{light}.1")
     _coupler(sheet, net, row, light, unit, pins)
 
 
-def _coupler(sheet: Sheet, net: str, row: int, light: str, unit: int,
-             pins: tuple[str, str, str, str]) -> None:
-    sheet.place("U10", "Isolator:LTV-847", "LTV-847", (108, row + 2), unit=unit,
-                footprint=fp.DIP16)
+def _coupler(
+    sheet: Sheet, net: str, row: int, light: str, unit: int, pins: tuple[str, str, str, str]
+) -> None:
+    sheet.place("U10", "Isolator:LTV-847", "LTV-847", (108, row + 2), unit=unit, footprint=fp.DIP16)
     anode, cathode, collector, emitter = (f"U10.{pin}" for pin in pins)
     sheet.wire(f"{light}.2", anode)
     sheet.wire(cathode, sheet.off(cathode, -3, 0))
@@ -72,10 +109,28 @@ def _limits(sheet: Sheet) -> None:
     ground(sheet, "MGND", (21, 60), 2)
     sheet.label("SW_X", (26, 50))
     sheet.label("SW_Z", (26, 84))
-    _switch(sheet, "LIMIT_X", 50, ("R41", "R42", "C21", "R43"), "22n", ("U9", 5, "11", "10"), 1,
-            ("1", "2", "16", "15"), "1k")
-    _switch(sheet, "LIMIT_Z", 84, ("R44", "R45", "C22", "R46"), "22n", ("U8", 5, "11", "10"), 2,
-            ("3", "4", "14", "13"), "1k")
+    _switch(
+        sheet,
+        "LIMIT_X",
+        50,
+        ("R41", "R42", "C21", "R43"),
+        "22n",
+        ("U9", 5, "11", "10"),
+        1,
+        ("1", "2", "16", "15"),
+        "1k",
+    )
+    _switch(
+        sheet,
+        "LIMIT_Z",
+        84,
+        ("R44", "R45", "C22", "R46"),
+        "22n",
+        ("U8", 5, "11", "10"),
+        2,
+        ("3", "4", "14", "13"),
+        "1k",
+    )
 
 
 def _index(sheet: Sheet) -> None:
@@ -87,13 +142,26 @@ def _index(sheet: Sheet) -> None:
     sheet.wire("J9.3", (21, 118))
     ground(sheet, "MGND", (21, 118), 2)
     sheet.label("INDEX_IN", (24, 116))
-    _switch(sheet, "SPINDLE_INDEX", 116, ("R47", "R48", "C23", "R49"), "4n7",
-            ("U8", 6, "13", "12"), 4, ("7", "8", "10", "9"), "3k3")
+    _switch(
+        sheet,
+        "SPINDLE_INDEX",
+        116,
+        ("R47", "R48", "C23", "R49"),
+        "4n7",
+        ("U8", 6, "13", "12"),
+        4,
+        ("7", "8", "10", "9"),
+        "3k3",
+    )
 
 
 def _probe(sheet: Sheet) -> None:
-    sheet.text("Contact sensor: 66 kohm in series, so a live spindle frame at 230 V\n"
-               "drives 3.5 mA at most", (12, 142), 1.5)
+    sheet.text(
+        "Contact sensor: 66 kohm in series, so a live spindle frame at 230 V\n"
+        "drives 3.5 mA at most",
+        (12, 142),
+        1.5,
+    )
     terminal(sheet, "J8", "CONTACT", 2, (14, 160), mirrored=True)
     resistor(sheet, "R57", "33k 1W", (30, 160), across=True, footprint=fp.RESISTOR_1W)
     sheet.wire("J8.1", "R57.1")
@@ -103,8 +171,7 @@ def _probe(sheet: Sheet) -> None:
     sheet.label("FRAME", (22, 170), 90)
     sheet.wire("R58.2", (38, 172))
     ground(sheet, "MGND", (38, 172))
-    sheet.place("Q5", "Transistor_BJT:2N3906", "2N3906", (74, 160), mirror="x",
-                footprint=fp.TO92)
+    sheet.place("Q5", "Transistor_BJT:2N3906", "2N3906", (74, 160), mirror="x", footprint=fp.TO92)
     sheet.wire("R57.2", "Q5.2")
     resistor(sheet, "R59", "47k", (44, 155))
     capacitor(sheet, "C24", "22n", (54, 155))
@@ -119,14 +186,22 @@ def _probe(sheet: Sheet) -> None:
     _coupler(sheet, "PROBE", 166, "R60", 3, ("5", "6", "12", "11"))
 
 
-def _output(sheet: Sheet, net: str, row: int, *, resistors: tuple[str, str, str], transistor: str,
-            clamp: str, unit: int, pins: tuple[str, str, str, str]) -> None:
+def _output(
+    sheet: Sheet,
+    net: str,
+    row: int,
+    *,
+    resistors: tuple[str, str, str],
+    transistor: str,
+    clamp: str,
+    unit: int,
+    pins: tuple[str, str, str, str],
+) -> None:
     light, base, pull_down = resistors
     sheet.to_sheet(net, (180, row), 180)
     resistor(sheet, light, "470", (188, row), across=True)
     sheet.wire((180, row), f"{light}.1")
-    sheet.place("U11", "Isolator:LTV-827", "LTV-827", (206, row + 2), unit=unit,
-                footprint=fp.DIP8)
+    sheet.place("U11", "Isolator:LTV-827", "LTV-827", (206, row + 2), unit=unit, footprint=fp.DIP8)
     anode, cathode, collector, emitter = (f"U11.{pin}" for pin in pins)
     sheet.wire(f"{light}.2", anode)
     sheet.wire(cathode, sheet.off(cathode, -3, 0))
@@ -135,8 +210,7 @@ def _output(sheet: Sheet, net: str, row: int, *, resistors: tuple[str, str, str]
     supply(sheet, "+5VM", sheet.off(collector, 4, 0), 2)
     resistor(sheet, base, "1k", (224, row + 4), across=True)
     sheet.wire(emitter, f"{base}.1")
-    sheet.place(transistor, "Transistor_BJT:BC337", "BC337-40", (246, row + 4),
-                footprint=fp.TO92)
+    sheet.place(transistor, "Transistor_BJT:BC337", "BC337-40", (246, row + 4), footprint=fp.TO92)
     sheet.wire(f"{base}.2", f"{transistor}.2")
     resistor(sheet, pull_down, "10k", (234, row + 9))
     sheet.wire(f"{pull_down}.1", (234, row + 4))
@@ -146,12 +220,16 @@ def _output(sheet: Sheet, net: str, row: int, *, resistors: tuple[str, str, str]
     supply(sheet, "VMOT", f"{clamp}.1", 1)
     sheet.wire(f"{clamp}.2", (260, row - 2))
     sheet.wire(f"{transistor}.1", (248, row - 2), (270, row - 2))
-    sheet.label(f"{net.split('_')[0]}_OUT", (262, row - 2))
+    sheet.label(f"{net.partition('_')[0]}_OUT", (262, row - 2))
 
 
 def _output_terminal(sheet: Sheet) -> None:
-    sheet.text("Outputs: low side, 0.5 A, for a relay coil or solid-state relay;\n"
-               "fed from VMOT, so the emergency stop drops them too", (176, 22), 1.5)
+    sheet.text(
+        "Outputs: low side, 0.5 A, for a relay coil or solid-state relay;\n"
+        "fed from VMOT, so the emergency stop drops them too",
+        (176, 22),
+        1.5,
+    )
     terminal(sheet, "J10", "OUTPUTS", 4, (296, 62))
     sheet.wire((270, 38), (282, 38), (282, 62), "J10.2")
     sheet.wire((270, 82), (282, 82), (282, 66), "J10.4")

@@ -28,13 +28,22 @@ def overlaps(sheet: Sheet) -> list[str]:
     texts = _texts(sheet)
     found = []
     for index, text in enumerate(texts):
-        found += [f"{sheet.name}: {text.words!r} lies on {other.words!r}"
-                  for other in texts[index + 1:] if _meet(text.box, other.box)]
+        found += [
+            f"{sheet.name}: {text.words!r} lies on {other.words!r}"
+            for other in texts[index + 1 :]
+            if _meet(text.box, other.box)
+        ]
         if not text.on_wire:
-            found += [f"{sheet.name}: {text.words!r} lies on the wire {a} {b}"
-                      for a, b in split_wires(sheet)[0] if _meet(text.box, _flat(a, b))]
-            found += [f"{sheet.name}: {text.words!r} lies on {part.ref}" for part in sheet.parts
-                      if _meet(text.box, part.body())]
+            found += [
+                f"{sheet.name}: {text.words!r} lies on the wire {a} {b}"
+                for a, b in split_wires(sheet)[0]
+                if _meet(text.box, _flat(a, b))
+            ]
+            found += [
+                f"{sheet.name}: {text.words!r} lies on {part.ref}"
+                for part in sheet.parts
+                if _meet(text.box, part.body())
+            ]
     return found
 
 
@@ -44,7 +53,7 @@ def _flat(a: tuple[int, int], b: tuple[int, int]) -> Box:
 
 def _meet(a: Box, b: Box) -> bool:
     gap = 0.05
-    return (a[0] + gap < b[2] and b[0] + gap < a[2] and a[1] + gap < b[3] and b[1] + gap < a[3])
+    return a[0] + gap < b[2] and b[0] + gap < a[2] and a[1] + gap < b[3] and b[1] + gap < a[3]
 
 
 def _box(words: str, x: float, y: float, justify: str, size: float = 1.27) -> Box:

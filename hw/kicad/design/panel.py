@@ -5,19 +5,42 @@ from design import footprints as fp
 from design.parts import capacitor, ground, network, resistor, supply
 from design.sheet import Sheet
 
-BUTTONS = (("RUN", "SW2", "R61", "C31"), ("HOLD", "SW3", "R62", "C32"),
-           ("STOP", "SW4", "R63", "C33"))
+BUTTONS = (
+    ("RUN", "SW2", "R61", "C31"),
+    ("HOLD", "SW3", "R62", "C32"),
+    ("STOP", "SW4", "R63", "C33"),
+)
 LADDER = (("R65", "330"), ("R66", "680"), ("R67", "1k"), ("R68", "3k3"))
-PANEL_PINS = {"3": "PB_RUN", "4": "PB_HOLD", "5": "PB_STOP", "6": "KEY1", "7": "KEY2",
-              "8": "KEY3", "9": "KEY4", "10": "KEY5"}
-LCD_PINS = {"4": "LCD_RS", "6": "LCD_E", "11": "LCD_D4", "12": "LCD_D5", "13": "LCD_D6",
-            "14": "LCD_D7"}
+PANEL_PINS = {
+    "3": "PB_RUN",
+    "4": "PB_HOLD",
+    "5": "PB_STOP",
+    "6": "KEY1",
+    "7": "KEY2",
+    "8": "KEY3",
+    "9": "KEY4",
+    "10": "KEY5",
+}
+LCD_PINS = {
+    "4": "LCD_RS",
+    "6": "LCD_E",
+    "11": "LCD_D4",
+    "12": "LCD_D5",
+    "13": "LCD_D6",
+    "14": "LCD_D7",
+}
 
 
 def draw() -> Sheet:
     """Return the sheet."""
-    sheet = Sheet("panel", "Panel", "A4", 6, "Buttons and keys to ground; LCD HD44780, 4 bits",
-                  "Run, hold, stop, five keys, LCD")
+    sheet = Sheet(
+        "panel",
+        "Panel",
+        "A4",
+        6,
+        "Buttons and keys to ground; LCD HD44780, 4 bits",
+        "Run, hold, stop, five keys, LCD",
+    )
     _buttons(sheet)
     _ladder(sheet)
     _connector(sheet)
@@ -31,8 +54,15 @@ def _buttons(sheet: Sheet) -> None:
     supply(sheet, "+5V", "RN6.1", 1)
     for index, (name, button, series, cap) in enumerate(BUTTONS):
         row = 38 + 20 * index
-        sheet.place(button, "Switch:SW_Push", name, (22, row), footprint=fp.BUTTON,
-                    ref_at=(-4, -3.4, "left"), value_at=(0, -3.4, "left"))
+        sheet.place(
+            button,
+            "Switch:SW_Push",
+            name,
+            (22, row),
+            footprint=fp.BUTTON,
+            ref_at=(-4, -3.4, "left"),
+            value_at=(0, -3.4, "left"),
+        )
         sheet.wire(f"{button}.1", (15, row))
         ground(sheet, "GND", (15, row), 1)
         resistor(sheet, series, "1k", (58, row), across=True)
@@ -74,8 +104,15 @@ def _ladder(sheet: Sheet) -> None:
 
 def _connector(sheet: Sheet) -> None:
     sheet.text("Panel connector", (94, 96), 1.5)
-    sheet.place("J11", "Connector_Generic:Conn_02x05_Odd_Even", "PANEL", (118, 112),
-                footprint=fp.IDC_10, ref_at=(-1, -6.4, "left"), value_at=(-1, 6.6, "left"))
+    sheet.place(
+        "J11",
+        "Connector_Generic:Conn_02x05_Odd_Even",
+        "PANEL",
+        (118, 112),
+        footprint=fp.IDC_10,
+        ref_at=(-1, -6.4, "left"),
+        value_at=(-1, 6.6, "left"),
+    )
     sheet.wire("J11.1", (110, 108), (110, 106))
     sheet.power("+5V", (110, 106))
     sheet.wire("J11.2", (140, 108))
@@ -88,9 +125,15 @@ def _connector(sheet: Sheet) -> None:
 
 def _lcd(sheet: Sheet) -> None:
     sheet.text("LCD 16x2, HD44780, write only", (158, 14), 1.5)
-    sheet.place("J12", "Connector_Generic:Conn_01x16", "LCD", (214, 60),
-                footprint=fp.HEADER.format(16), ref_at=(-1, -17.2, "left"),
-                value_at=(-1, 19, "left"))
+    sheet.place(
+        "J12",
+        "Connector_Generic:Conn_01x16",
+        "LCD",
+        (214, 60),
+        footprint=fp.HEADER.format(16),
+        ref_at=(-1, -17.2, "left"),
+        value_at=(-1, 19, "left"),
+    )
     for pin, net in LCD_PINS.items():
         sheet.wire(f"J12.{pin}", sheet.off(f"J12.{pin}", -8, 0))
         sheet.to_sheet(net, sheet.off(f"J12.{pin}", -8, 0), 180)
@@ -107,8 +150,15 @@ def _lcd(sheet: Sheet) -> None:
     capacitor(sheet, "C35", "100n", (168, 44))
     sheet.wire("C35.1", (168, 38))
     ground(sheet, "GND", "C35.2", 1)
-    sheet.place("RV1", "Device:R_Potentiometer_Trim", "10k", (182, 46), footprint=fp.TRIMMER,
-                ref_at=(-2, -1, "right"), value_at=(-2, 1, "right"))
+    sheet.place(
+        "RV1",
+        "Device:R_Potentiometer_Trim",
+        "10k",
+        (182, 46),
+        footprint=fp.TRIMMER,
+        ref_at=(-2, -1, "right"),
+        value_at=(-2, 1, "right"),
+    )
     sheet.wire("RV1.1", (182, 38))
     ground(sheet, "GND", "RV1.3", 1)
     sheet.wire("RV1.2", (190, 46), (190, 50), "J12.3")

@@ -2,16 +2,30 @@
 """Sheet 3: supply input, emergency stop, the two 5 V rails, power path."""
 
 from design import footprints as fp
-from design.parts import (capacitor, diode, electrolytic, ground, led, resistor, supply, terminal,
-                          zener)
+from design.parts import (
+    capacitor,
+    diode,
+    electrolytic,
+    ground,
+    led,
+    resistor,
+    supply,
+    terminal,
+    zener,
+)
 from design.sheet import Sheet
 
 
 def draw() -> Sheet:
     """Return the sheet."""
-    sheet = Sheet("power", "Power", "A4", 3,
-                  "Fuse, reverse polarity, emergency stop, isolated logic supply",
-                  "5 to 12 V in: fuse, reverse polarity,\nemergency stop, 5 V for both sides")
+    sheet = Sheet(
+        "power",
+        "Power",
+        "A4",
+        3,
+        "Fuse, reverse polarity, emergency stop, isolated logic supply",
+        "5 to 12 V in: fuse, reverse polarity,\nemergency stop, 5 V for both sides",
+    )
     _input(sheet)
     _estop(sheet)
     _regulator(sheet)
@@ -28,8 +42,17 @@ def _input(sheet: Sheet) -> None:
     sheet.wire("J2.1", "F2.1")
     sheet.wire("J2.2", (22, 32), (22, 64), (36, 64))
     sheet.label("SUPPLY_N", (24, 64))
-    sheet.place("Q4", "Transistor_FET:IRLZ44N", "IRLZ44N", (40, 62), rot=90, mirror="x",
-                footprint=fp.TO220, ref_at=(-4, 4.2, "left"), value_at=(0.5, 4.2, "left"))
+    sheet.place(
+        "Q4",
+        "Transistor_FET:IRLZ44N",
+        "IRLZ44N",
+        (40, 62),
+        rot=90,
+        mirror="x",
+        footprint=fp.TO220,
+        ref_at=(-4, 4.2, "left"),
+        value_at=(0.5, 4.2, "left"),
+    )
     sheet.wire("Q4.3", (106, 64))
     sheet.wire("F2.2", (116, 30))
     resistor(sheet, "R9", "10k", (40, 36))
@@ -75,10 +98,24 @@ def _estop(sheet: Sheet) -> None:
     ground(sheet, "MGND", (154, 64), 2)
     supply(sheet, "VMOT", (128, 44), 2)
     sheet.power("PWR_FLAG", (182, 44))
-    sheet.place("TP7", "Connector:TestPoint", "VMOT", (192, 44), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
-    sheet.place("TP5", "Connector:TestPoint", "MGND", (206, 62), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
+    sheet.place(
+        "TP7",
+        "Connector:TestPoint",
+        "VMOT",
+        (192, 44),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
+    sheet.place(
+        "TP5",
+        "Connector:TestPoint",
+        "MGND",
+        (206, 62),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
     ground(sheet, "MGND", (206, 62), 2)
     sheet.text("Open contact: no motor, no relay output.", (132, 26))
     sheet.text("The chip stays alive and reads ESTOP_SENSE.", (132, 29))
@@ -87,8 +124,15 @@ def _estop(sheet: Sheet) -> None:
 def _regulator(sheet: Sheet) -> None:
     sheet.frame((10, 80), (84, 116))
     sheet.text("5 V of the machine side", (12, 84), 1.5)
-    sheet.place("U3", "tornillo:LDO_5V_TO220", "LM2940CT-5.0", (40, 96), footprint=fp.TO220,
-                ref_at=(-4, -3.4, "left"), value_at=(2, 5.4, "left"))
+    sheet.place(
+        "U3",
+        "tornillo:LDO_5V_TO220",
+        "LM2940CT-5.0",
+        (40, 96),
+        footprint=fp.TO220,
+        ref_at=(-4, -3.4, "left"),
+        value_at=(2, 5.4, "left"),
+    )
     sheet.to_sheet("VFUSE", (20, 96), 180)
     sheet.wire((20, 96), "U3.1")
     capacitor(sheet, "C14", "470n", (24, 102))
@@ -100,15 +144,29 @@ def _regulator(sheet: Sheet) -> None:
     sheet.wire("C15.1", (60, 96))
     ground(sheet, "MGND", "C15.2")
     supply(sheet, "+5VM", (52, 96), 2)
-    sheet.place("TP6", "Connector:TestPoint", "+5VM", (74, 96), footprint=fp.TEST_POINT,
-                ref_at=(1.5, -3, "left"), value_at=(1.5, -1.2, "left"))
+    sheet.place(
+        "TP6",
+        "Connector:TestPoint",
+        "+5VM",
+        (74, 96),
+        footprint=fp.TEST_POINT,
+        ref_at=(1.5, -3, "left"),
+        value_at=(1.5, -1.2, "left"),
+    )
 
 
 def _isolated(sheet: Sheet) -> None:
     sheet.frame((86, 80), (224, 128))
     sheet.text("Logic supply across the isolation gap; power path to USB", (88, 84), 1.5)
-    sheet.place("U4", "tornillo:DCDC_5V_5V_SIP7", "TMV0505S", (116, 98), footprint=fp.DCDC,
-                ref_at=(-6, -5.2, "left"), value_at=(-6, 5.4, "left"))
+    sheet.place(
+        "U4",
+        "tornillo:DCDC_5V_5V_SIP7",
+        "TMV0505S",
+        (116, 98),
+        footprint=fp.DCDC,
+        ref_at=(-6, -5.2, "left"),
+        value_at=(-6, 5.4, "left"),
+    )
     capacitor(sheet, "C16", "1u", (96, 102))
     sheet.wire("U4.1", (96, 96), "C16.1")
     supply(sheet, "+5VM", (96, 96), 2)
@@ -125,18 +183,41 @@ def _isolated(sheet: Sheet) -> None:
     sheet.wire("R12.1", (154, 96))
     ground(sheet, "GND", "R12.2")
     sheet.label("V5ISO", (128, 96))
-    diode(sheet, "D7", "1N5819", (172, 96), cathode="right", footprint=fp.DIODE_1A,
-          symbol="Device:D_Schottky")
+    diode(
+        sheet,
+        "D7",
+        "1N5819",
+        (172, 96),
+        cathode="right",
+        footprint=fp.DIODE_1A,
+        symbol="Device:D_Schottky",
+    )
     sheet.wire("D7.2", (168, 96))
-    sheet.place("Q3", "Transistor_FET:AO3401A", "AO3401A", (168, 108), rot=90, mirror="x",
-                footprint=fp.SOT23, ref_at=(-4, 4.4, "left"), value_at=(0.5, 4.4, "left"))
+    sheet.place(
+        "Q3",
+        "Transistor_FET:AO3401A",
+        "AO3401A",
+        (168, 108),
+        rot=90,
+        mirror="x",
+        footprint=fp.SOT23,
+        ref_at=(-4, 4.4, "left"),
+        value_at=(0.5, 4.4, "left"),
+    )
     sheet.wire("Q3.1", (168, 96))
     sheet.wire("Q3.3", (162, 110), (162, 114))
     sheet.wire((162, 114), (145, 114))
     sheet.power("VBUS", (145, 114))
     sheet.wire("Q3.2", (186, 110), (186, 96))
-    diode(sheet, "D8", "1N5819", (174, 119), cathode="right", footprint=fp.DIODE_1A,
-          symbol="Device:D_Schottky")
+    diode(
+        sheet,
+        "D8",
+        "1N5819",
+        (174, 119),
+        cathode="right",
+        footprint=fp.DIODE_1A,
+        symbol="Device:D_Schottky",
+    )
     sheet.wire("D8.2", (162, 119), (162, 114))
     sheet.wire("D8.1", (186, 119), (186, 110))
     sheet.wire("D7.1", (196, 96))

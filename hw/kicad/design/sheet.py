@@ -13,6 +13,7 @@ import copy
 import uuid
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 from design import library
@@ -68,9 +69,12 @@ class Part:
 
     def body(self) -> Box:
         """Return the box of the drawn body, in steps."""
-        corners = [self.place(box[i], box[j])
-                   for unit, box in self.symbol.boxes.items() if unit in (0, self.unit)
-                   for i, j in ((0, 1), (2, 3))]
+        corners = [
+            self.place(box[i], box[j])
+            for unit, box in self.symbol.boxes.items()
+            if unit in (0, self.unit)
+            for i, j in ((0, 1), (2, 3))
+        ]
         xs, ys = [c[0] for c in corners], [c[1] for c in corners]
         if not xs:
             return (self.at[0], self.at[1], self.at[0], self.at[1])
@@ -100,26 +104,69 @@ class Sheet:
         """Identifier of the sheet symbol on the root sheet."""
         return name_uuid("sheet", self.name)
 
-    def place(self, ref: str, lib_id: str, value: str, at: Point, *, rot: int = 0,
-              mirror: str = "", unit: int = 1, footprint: str = "",
-              ref_at: tuple[float, float, str] | None = None,
-              value_at: tuple[float, float, str] | None = None, **fields: str) -> Part:
-        """Place a part. ref_at and value_at move its texts: dx, dy in steps from
-        its centre, and left, right or center."""
-        part = Part(ref, library.load(lib_id), value, at, rot, mirror, unit, footprint, fields,
-                    ref_at, value_at)
+    def place(
+        self,
+        ref: str,
+        lib_id: str,
+        value: str,
+        at: Point,
+        *,
+        rot: int = 0,
+        mirror: str = "",
+        unit: int = 1,
+        footprint: str = "",
+        ref_at: tuple[float, float, str] | None = None,
+        value_at: tuple[float, float, str] | None = None,
+        **fields: str,
+    ) -> Part:
+        """Place a part.
+
+        ref_at and value_at move its texts: dx, dy in steps from its centre,
+        and left, right or center.
+        """
+        part = Part(
+            ref,
+            library.load(lib_id),
+            value,
+            at,
+            rot,
+            mirror,
+            unit,
+            footprint,
+            fields,
+            ref_at,
+            value_at,
+        )
         self.parts.append(part)
         return part
 
     def power(self, net: str, at: Point | str, rot: int = 0) -> None:
         """Place a power symbol of the net; rot 180 turns it upside down."""
         self._power_count += 1
-        symbols = {"GND": "power:GND", "+5V": "power:+5V", "VBUS": "power:VBUS",
-                   "PWR_FLAG": "power:PWR_FLAG"}
+        symbols = {
+            "GND": "power:GND",
+            "+5V": "power:+5V",
+            "VBUS": "power:VBUS",
+            "PWR_FLAG": "power:PWR_FLAG",
+        }
         lib_id = symbols.get(net, f"tornillo:{net}")
         ref = f"#{'FLG' if net == 'PWR_FLAG' else 'PWR'}{self.page}{self._power_count:02d}"
-        self.parts.append(Part(ref, library.load(lib_id), net, self.point(at), rot, "", 1, "",
-                               {}, None, None, False))
+        self.parts.append(
+            Part(
+                ref,
+                library.load(lib_id),
+                net,
+                self.point(at),
+                rot,
+                "",
+                1,
+                "",
+                {},
+                None,
+                None,
+                False,
+            )
+        )
 
     def point(self, where: Point | str) -> Point:
         """Return a position: a point as it is, or the place of a pin."""
@@ -142,7 +189,7 @@ class Sheet:
     def wire(self, *stops: Point | str) -> None:
         """Draw a wire through pins and points."""
         points = [self.point(stop) for stop in stops]
-        for start, end in zip(points, points[1:], strict=False):
+        for start, end in pairwise(points):
             corner = (end[0], start[1])
             for a, b in ((start, corner), (corner, end)):
                 if a != b:
@@ -177,13 +224,17 @@ class Sheet:
 
 def split_wires(sheet: Sheet) -> tuple[list[tuple[Point, Point]], list[Point]]:
     """Cut wires where others end on them; return the pieces and the junctions."""
-    pins = [part.pin(pin.number) for part in sheet.parts for pin in part.symbol.pins
-            if pin.unit in (0, part.unit)]
+    pins = [
+        part.pin(pin.number)
+        for part in sheet.parts
+        for pin in part.symbol.pins
+        if pin.unit in (0, part.unit)
+    ]
     ends = {p for segment in sheet.segments for p in segment} | set(pins)
     pieces: set[tuple[Point, Point]] = set()
     for a, b in sheet.segments:
         inside = sorted(p for p in ends | {a, b} if _on(p, a, b))
-        pieces |= set(zip(inside, inside[1:], strict=False))
+        pieces |= set(pairwise(inside))
     meet: dict[Point, int] = {}
     for p in [p for piece in pieces for p in piece] + pins:
         meet[p] = meet.get(p, 0) + 1
@@ -193,8 +244,11 @@ def split_wires(sheet: Sheet) -> tuple[list[tuple[Point, Point]], list[Point]]:
 
 def _on(p: Point, a: Point, b: Point) -> bool:
     cross = (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0])
-    return (cross == 0 and min(a[0], b[0]) <= p[0] <= max(a[0], b[0])
-            and min(a[1], b[1]) <= p[1] <= max(a[1], b[1]))
+    return (
+        cross == 0
+        and min(a[0], b[0]) <= p[0] <= max(a[0], b[0])
+        and min(a[1], b[1]) <= p[1] <= max(a[1], b[1])
+    )
 
 
 def text_places(part: Part) -> list[tuple[str, str, float, float, str]]:
@@ -219,8 +273,10 @@ def text_places(part: Part) -> list[tuple[str, str, float, float, str]]:
         ref = (left - x, top - y - 1.2, "left")
         value = (left - x, bottom - y + 1.2, "left")
     ref, value = part.ref_at or ref, part.value_at or value
-    return [("Reference", part.ref, x + ref[0], y + ref[1], ref[2]),
-            ("Value", part.value, x + value[0], y + value[1], value[2])]
+    return [
+        ("Reference", part.ref, x + ref[0], y + ref[1], ref[2]),
+        ("Value", part.value, x + value[0], y + value[1], value[2]),
+    ]
 
 
 def _power_text(part: Part) -> list[tuple[str, str, float, float, str]]:
@@ -242,8 +298,7 @@ def embedded(symbol: library.Symbol) -> list[Any]:
 
 def effects(size: float = 1.27, justify: Iterable[str] = (), hide: bool = False) -> list[Any]:
     """Return the (effects ...) of a text."""
-    node: list[Any] = [Atom("effects"),
-                       [Atom("font"), [Atom("size"), atom(size), atom(size)]]]
+    node: list[Any] = [Atom("effects"), [Atom("font"), [Atom("size"), atom(size), atom(size)]]]
     words = [Atom(word) for word in justify if word != "center"]
     if words:
         node.append([Atom("justify"), *words])

@@ -38,8 +38,7 @@ def machine_side(pins: list[tuple[str, str]], machine_parts: frozenset[str]) -> 
 
     Raises ValueError for a net that touches both sides.
     """
-    sides = {pin in BRIDGES[ref] if ref in BRIDGES else ref in machine_parts
-             for ref, pin in pins}
+    sides = {pin in BRIDGES[ref] if ref in BRIDGES else ref in machine_parts for ref, pin in pins}
     if len(sides) != 1:
         raise ValueError(f"net crosses the isolation gap: {pins}")
     return sides.pop()

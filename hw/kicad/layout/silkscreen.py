@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: CERN-OHL-P-2.0
 """Words on the board: names, connector pinouts, revision, licence.
 
-Connectors are named with their use; any other part's reference goes to the first place near it where it lies on nothing
-else; words with a fixed place come first.
+Connectors are named with their use. Any other part's reference goes to the
+first place near it where it lies on nothing else; words with a fixed place come first.
 """
 
 from __future__ import annotations
@@ -21,24 +21,42 @@ WORDS: list[tuple[str, float, float, float, float]] = [
     ("TORNILLO", 30.0, 19.0, 2.2, 0),
     (f"control board rev {REVISION}  {DATE}", 30.0, 22.4, 1.0, 0),
     ("CERN-OHL-P-2.0", 12.0, 25.0, 1.0, 0),
-    ("LOGIC", 78.0, 27.5, 1.4, 0), ("MACHINE", 103.0, 31.2, 1.4, 0),
-    ("isolation gap", 91.8, 59.0, 1.0, 0), ("keep clear", 91.8, 61.0, 1.0, 0),
+    ("LOGIC", 78.0, 27.5, 1.4, 0),
+    ("MACHINE", 103.0, 31.2, 1.4, 0),
+    ("isolation gap", 91.8, 59.0, 1.0, 0),
+    ("keep clear", 91.8, 61.0, 1.0, 0),
     ("J2 SUPPLY 5-12V", 188.0, 14.6, 0.8, 90),
-    ("+", 174.3, 16.5, 1.4, 0), ("-", 174.3, 11.4, 1.4, 0),
+    ("+", 174.3, 16.5, 1.4, 0),
+    ("-", 174.3, 11.4, 1.4, 0),
     ("J3 E-STOP", 188.0, 25.3, 1.0, 90),
-    ("J5 MOTOR Z", 188.0, 46.8, 1.2, 90), ("J6 MOTOR X", 188.0, 80.8, 1.2, 90),
+    ("J5 MOTOR Z", 188.0, 46.8, 1.2, 90),
+    ("J6 MOTOR X", 188.0, 80.8, 1.2, 90),
     ("J1 USB", 72.0, 132.0, 1.0, 0),
-    ("J8 CONTACT", 106.5, 132.4, 0.9, 0), ("J9 INDEX", 121.0, 132.4, 0.9, 0),
-    ("J7 LIMIT SWITCHES", 141.0, 132.4, 0.9, 0), ("J10 OUTPUTS", 163.6, 132.4, 0.9, 0),
-    ("J12 LCD", 56.5, 5.0, 1.2, 0), ("J13 ICSP", 67.2, 39.6, 0.9, 0),
-    ("J14 STEP/DIR", 7.8, 43.6, 1.0, 0), ("J11 PANEL", 7.8, 80.9, 1.0, 0), ("J15 SPARE", 8.6, 67.4, 0.9, 0),
-    ("RUN", 17.2, 127.5, 1.0, 0), ("HOLD", 29.2, 127.5, 1.0, 0), ("STOP", 41.2, 127.5, 1.0, 0),
-    ("RESET", 42.0, 36.0, 0.9, 0), ("T5A", 160.2, 7.2, 1.2, 0), ("CONTRAST", 24.5, 16.0, 0.9, 0),
-    ("STATUS", 7.3, 32.6, 0.9, 0), ("MOTOR ON", 152.0, 23.6, 0.8, 0),
-    ("SUPPLY ON", 125.0, 31.6, 0.8, 0), ("DRIVERS ON", 24.5, 37.0, 0.8, 0),
+    ("J8 CONTACT", 106.5, 132.4, 0.9, 0),
+    ("J9 INDEX", 121.0, 132.4, 0.9, 0),
+    ("J7 LIMIT SWITCHES", 141.0, 132.4, 0.9, 0),
+    ("J10 OUTPUTS", 163.6, 132.4, 0.9, 0),
+    ("J12 LCD", 56.5, 5.0, 1.2, 0),
+    ("J13 ICSP", 67.2, 39.6, 0.9, 0),
+    ("J14 STEP/DIR", 7.8, 43.6, 1.0, 0),
+    ("J11 PANEL", 7.8, 80.9, 1.0, 0),
+    ("J15 SPARE", 8.6, 67.4, 0.9, 0),
+    ("RUN", 17.2, 127.5, 1.0, 0),
+    ("HOLD", 29.2, 127.5, 1.0, 0),
+    ("STOP", 41.2, 127.5, 1.0, 0),
+    ("RESET", 42.0, 36.0, 0.9, 0),
+    ("T5A", 160.2, 7.2, 1.2, 0),
+    ("CONTRAST", 24.5, 16.0, 0.9, 0),
+    ("STATUS", 7.3, 32.6, 0.9, 0),
+    ("MOTOR ON", 152.0, 23.6, 0.8, 0),
+    ("SUPPLY ON", 125.0, 31.6, 0.8, 0),
+    ("DRIVERS ON", 24.5, 37.0, 0.8, 0),
 ]
-WORDS += [(f"{axis}{phase}", 85.3, top + 5.08 * (phase - 1), 0.8, 0)
-          for axis, top in (("Z", 32.0), ("X", 66.0)) for phase in (1, 2, 3, 4)]
+WORDS += [
+    (f"{axis}{phase}", 85.3, top + 5.08 * (phase - 1), 0.8, 0)
+    for axis, top in (("Z", 32.0), ("X", 66.0))
+    for phase in (1, 2, 3, 4)
+]
 # Connector: words of its pins in order, offset from the pad in mm, size, angle.
 PINOUTS: dict[str, tuple[list[str], float, float, float, float]] = {
     "J5": (["COM", "1", "2", "3", "4", "COM"], -7.4, 0.0, 0.9, 0),
@@ -57,6 +75,7 @@ class Layer:
     """The silkscreen side that is being filled: what already lies on it."""
 
     def __init__(self, pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> None:
+        """Take in all pads and drawings of the board."""
         self.pcbnew, self.board, self.at = pcbnew, board, at
         self.taken: list[Box] = []
         for footprint in board.GetFootprints():
@@ -69,8 +88,12 @@ class Layer:
     def box(self, rectangle: Any, margin: float = 0.15) -> Box:
         """Return a rectangle of the board in mm, grown by margin."""
         mm = self.pcbnew.ToMM
-        return (mm(rectangle.GetLeft()) - margin, mm(rectangle.GetTop()) - margin,
-                mm(rectangle.GetRight()) + margin, mm(rectangle.GetBottom()) + margin)
+        return (
+            mm(rectangle.GetLeft()) - margin,
+            mm(rectangle.GetTop()) - margin,
+            mm(rectangle.GetRight()) + margin,
+            mm(rectangle.GetBottom()) + margin,
+        )
 
     def outline(self, item: Any) -> list[Box]:
         """Return boxes that cover a drawing: four edges where it is a frame."""
@@ -80,8 +103,12 @@ class Layer:
         if not hollow or item.GetFilledArea() if hasattr(item, "GetFilledArea") else not hollow:
             return [(left, top, right, bottom)]
         edge = 0.45 if kind == self.pcbnew.SHAPE_T_RECT else 0.17 * (right - left) + 0.3
-        return [(left, top, left + edge, bottom), (right - edge, top, right, bottom),
-                (left, top, right, top + edge), (left, bottom - edge, right, bottom)]
+        return [
+            (left, top, left + edge, bottom),
+            (right - edge, top, right, bottom),
+            (left, top, right, top + edge),
+            (left, bottom - edge, right, bottom),
+        ]
 
     def free(self, box: Box) -> bool:
         """Tell whether nothing lies in box and it is on the board."""
@@ -89,8 +116,10 @@ class Layer:
         x1, y1 = x0 + WIDTH, y0 + HEIGHT
         if box[0] < x0 + 0.4 or box[1] < y0 + 0.4 or box[2] > x1 - 0.4 or box[3] > y1 - 0.4:
             return False
-        return not any(box[0] < other[2] and other[0] < box[2] and box[1] < other[3]
-                       and other[1] < box[3] for other in self.taken)
+        return not any(
+            box[0] < other[2] and other[0] < box[2] and box[1] < other[3] and other[1] < box[3]
+            for other in self.taken
+        )
 
     def style(self, text: Any, size: float) -> None:
         """Give a text its size and stroke, readable from below."""
@@ -126,11 +155,17 @@ class Layer:
         spots = [(middle_x, body[1] - 0.8), (middle_x, body[3] + 0.8)]
         for across in (0.0, -1.5, 1.5, -3.0, 3.0, -5.0, 5.0, -7.0, 7.0):
             for away in (0.8, 1.3, 1.9):
-                spots += [(middle_x + across, body[1] - away), (middle_x + across, body[3] + away),
-                          (body[0] - away - 0.8, middle_y + across),
-                          (body[2] + away + 0.8, middle_y + across)]
-        spots += [(middle_x + dx, middle_y + dy) for dx in (-4, -3, -2, -1, 0, 1, 2, 3, 4)
-                  for dy in (-4, -3, -2, -1, 0, 1, 2, 3, 4)]
+                spots += [
+                    (middle_x + across, body[1] - away),
+                    (middle_x + across, body[3] + away),
+                    (body[0] - away - 0.8, middle_y + across),
+                    (body[2] + away + 0.8, middle_y + across),
+                ]
+        spots += [
+            (middle_x + dx, middle_y + dy)
+            for dx in (-4, -3, -2, -1, 0, 1, 2, 3, 4)
+            for dy in (-4, -3, -2, -1, 0, 1, 2, 3, 4)
+        ]
         return self.settle(footprint, spots)
 
     def settle(self, footprint: Any, spots: list[tuple[float, float]]) -> bool:
@@ -172,10 +207,14 @@ def write(pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> None:
         except ValueError as error:
             problems.append(str(error))
     footprints = sorted(board.GetFootprints(), key=lambda part: part.GetReference())
-    outside = [part for part in footprints
-               if part.Reference().IsVisible() and not layer.inside(part)]
+    outside = [
+        part for part in footprints if part.Reference().IsVisible() and not layer.inside(part)
+    ]
     layer.taken += [layer.box(part.GetBoundingBox(False), -0.2) for part in footprints]
-    problems += [f"no room on the silkscreen for {part.GetReference()}"
-                 for part in outside if not layer.beside(part)]
+    problems += [
+        f"no room on the silkscreen for {part.GetReference()}"
+        for part in outside
+        if not layer.beside(part)
+    ]
     if problems:
         raise ValueError("\n".join(problems))

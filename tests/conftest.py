@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Firmware coverage over the whole test run, and readable failures from the shared modules."""
 
+import sys
+from pathlib import Path
+
 import pytest
+
+# The build's tools are scripts beside each other, not a package.
+sys.path.append(str(Path(__file__).parents[1] / "firmware" / "toolchain"))
 
 pytest.register_assert_rewrite("simulated.bench", "simulated.little_pin", "simulated.processes")
 

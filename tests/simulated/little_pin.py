@@ -16,7 +16,7 @@ RADIUS, LENGTH, FRONT = 60, 100, 6
 ZERO_X, ZERO_Z = -100, -60
 OPERATIONS: tuple[Operation, ...] = (FaceRecord(0, 0), CylinderRecord(0, -40, 35))
 #: Options of the virtual lathe that belong to the part.
-OPTIONS = {
+OPTIONS: dict[str, Any] = {
     "stock_diameter_mm": 2 * RADIUS * STEP_MM,
     "stock_length_mm": LENGTH * STEP_MM,
     "stock_allowance_mm": FRONT * STEP_MM,

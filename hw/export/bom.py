@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: CERN-OHL-P-2.0
 """Writes the bill of materials, as CSV and as a page, from netlist and catalogue.
 
-catalogue.csv is kept by hand: what to order for each value, second sources and
-a rough price for one piece in US dollars. A value without a line there is an
+catalogue.csv is kept by hand: what to order for each value (or value and
+letters of the reference, as "10k RN"), second sources and a rough price for one piece in US dollars. A value without a line there is an
 error, so the bill is always whole.
 """
 
@@ -46,20 +46,26 @@ def read(netlist: Path) -> list[Line]:
     """Return the bill; raises KeyError for a value the catalogue lacks."""
     with CATALOGUE.open(encoding="utf-8", newline="") as file:
         catalogue = {row["value"]: row for row in csv.DictReader(file)}
-    groups: dict[tuple[str, str], list[str]] = {}
+    groups: dict[tuple[str, str], list[tuple[str, str]]] = {}
+    rows = {}
     for part in ElementTree.parse(netlist).iterfind(".//comp"):
-        ref = part.get("ref", "")
+        ref, value = part.get("ref", ""), part.findtext("value", "")
         if not UNBOUGHT.match(ref):
-            key = (part.findtext("value", ""), part.findtext("footprint", "").split(":")[-1])
-            groups.setdefault(key, []).append(ref)
+            special = f"{value} {ref.rstrip('0123456789')}"
+            row = catalogue[special if special in catalogue else value]
+            key = (row["part"], part.findtext("footprint", "").split(":")[-1])
+            rows[key] = row
+            groups.setdefault(key, []).append((ref, value))
     lines = []
-    for (value, footprint), refs in groups.items():
-        row = catalogue["SUPPLYJ" if refs == ["J2"] else value]
+    for key, parts in groups.items():
+        row = rows[key]
+        refs = tuple(sorted((ref for ref, _ in parts), key=_order))
+        values = " ".join(sorted({value for _, value in parts}))
         lines.append(
             Line(
-                tuple(sorted(refs, key=_order)),
-                value,
-                footprint,
+                refs,
+                values,
+                key[1],
                 row["what"],
                 row["part"],
                 row["second_source"],

@@ -41,11 +41,8 @@ def test_a_missing_free_wheel_diode_is_found(board: Board) -> None:
 
 
 def test_a_wire_on_the_wrong_pin_of_the_chip_is_found(board: Board) -> None:
-    board.edit(
-        "hw/kicad/design/controller.py",
-        '"37": "LIMIT_X", "38": "LIMIT_Z"',
-        '"37": "LIMIT_Z", "38": "LIMIT_X"',
-    )
+    board.edit("hw/kicad/design/controller.py", '"37": "LIMIT_X"', '"37": "LIMIT_Z"')
+    board.edit("hw/kicad/design/controller.py", '"38": "LIMIT_Z"', '"38": "LIMIT_X"')
     board.draw()
     verdict = board.check("nets")
     assert "board.h has LIMIT_X on RB4, pin 37; the board has LIMIT_Z there" in verdict.output

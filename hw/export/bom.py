@@ -2,8 +2,9 @@
 """Writes the bill of materials, as CSV and as a page, from netlist and catalogue.
 
 catalogue.csv is kept by hand: what to order for each value (or value and
-letters of the reference, as "10k RN"), second sources and a rough price for one piece in US dollars. A value without a line there is an
-error, so the bill is always whole.
+letters of the reference, as "10k RN"), second sources and a rough price for
+one piece in US dollars. A value without a line there is an error, so the bill
+is always whole.
 """
 
 from __future__ import annotations

@@ -108,14 +108,48 @@ CONNECTORS: dict[str, tuple[str, list[Wire]]] = {
             ("GND", "", ""),
         ],
     ),
+    "J13": (
+        "In-circuit programming",
+        [
+            ("MCLR", "", "VPP, pin 1 of the programmer"),
+            ("+5V", "", "supply"),
+            ("GND", "", "ground"),
+            ("PGD", "", "data"),
+            ("VBUS_SENSE", "", "clock (PGC)"),
+            ("nothing", "", "open"),
+        ],
+    ),
+    "J12": (
+        "LCD 16x2, HD44780",
+        [
+            ("GND", "", "VSS"),
+            ("+5V", "", "VDD"),
+            ("LCD_VO", "", "VO, contrast"),
+            ("LCD_RS", "", "RS"),
+            ("GND", "", "R/W, write only"),
+            ("LCD_E", "", "E"),
+            ("nothing", "", "D0, open"),
+            ("nothing", "", "D1, open"),
+            ("nothing", "", "D2, open"),
+            ("nothing", "", "D3, open"),
+            ("LCD_D4", "", "D4"),
+            ("LCD_D5", "", "D5"),
+            ("LCD_D6", "", "D6"),
+            ("LCD_D7", "", "D7"),
+            ("*", "", "backlight anode, through 100 ohm"),
+            ("GND", "", "backlight cathode"),
+        ],
+    ),
 }
-COLUMNS = (("J2", "J3", "J5", "J6"), ("J7", "J8", "J9", "J10"), ("J11", "J14"))
+COLUMNS = (("J2", "J3", "J5", "J6"), ("J7", "J8", "J9", "J10", "J13"), ("J11", "J14", "J12"))
 WIDTH, LINE = 430, 18
 
 
 def _nets(netlist: Path) -> dict[tuple[str, str], str]:
     found = {}
     for net in ElementTree.parse(netlist).iterfind(".//net"):
+        if net.get("name", "").startswith("unconnected-"):
+            continue
         for node in net.iter("node"):
             found[node.get("ref", ""), node.get("pin", "")] = net.get("name", "").rsplit("/", 1)[-1]
     return found
@@ -144,7 +178,7 @@ def write(netlist: Path, target: Path) -> None:
                     f'<rect x="{x + 8}" y="{line - 12}" width="22" height="15" fill="#3a7d44"/>'
                 )
                 body.append(_text(x + 13, line, str(index + 1), colour="white"))
-                shown = "SUPPLY_P" if net == "*" else real
+                shown = {"J2": "SUPPLY_P", "J12": "LCD_LED"}[ref] if net == "*" else real
                 body.append(_text(x + 38, line, shown))
                 body.append(
                     f'<line x1="{x + 140}" y1="{line - 4}" x2="{x + 170}" '

@@ -179,7 +179,7 @@ def _isolated(sheet: Sheet) -> None:
     electrolytic(sheet, "C17", "10u 25V", (136, 102), fp.ELECTROLYTIC_5)
     sheet.wire("C17.1", (136, 96))
     ground(sheet, "GND", "C17.2")
-    resistor(sheet, "R12", "4k7", (154, 102))
+    resistor(sheet, "R12", "330", (154, 102))
     sheet.wire("R12.1", (154, 96))
     ground(sheet, "GND", "R12.2")
     sheet.label("V5ISO", (128, 96))

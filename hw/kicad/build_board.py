@@ -232,9 +232,9 @@ def finish(target: Path, routes: Path) -> None:
     if not pcbnew.ImportSpecctraSES(board, str(routes)):
         raise SystemExit(f"{routes} could not be read")
     _pours(board)
-    silkscreen.write(pcbnew, board, at)
+    words = silkscreen.write(pcbnew, board, at)
     pcbnew.ZONE_FILLER(board).Fill(board.Zones())
-    _stitch(board)
+    _stitch(board, words)
     pcbnew.ZONE_FILLER(board).Fill(board.Zones())
     pcbnew.SaveBoard(str(target), board)
 
@@ -264,36 +264,39 @@ def _pours(board: Any) -> None:
             board.Add(zone)
 
 
-def _stitch(board: Any) -> None:
-    """Join the two sides of each ground with vias wherever both have copper."""
-    pitch, ring = 7.0, 0.75
-    around = [
-        (0.0, 0.0),
-        (ring, 0.0),
-        (-ring, 0.0),
-        (0.0, ring),
-        (0.0, -ring),
-        (0.55, 0.55),
-        (0.55, -0.55),
-        (-0.55, 0.55),
-        (-0.55, -0.55),
+def _stitch(board: Any, words: list[silkscreen.Box]) -> None:
+    """Join the two sides of each ground with vias, not under words, where both have copper."""
+    pitch, ring, slant = 7.0, 0.75, 0.55
+    around = [(dx * ring, dy * ring) for dx, dy in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1))]
+    around += [(dx * slant, dy * slant) for dx in (-1, 1) for dy in (-1, 1)]
+    spots = [
+        (pitch * (column + 0.5), pitch * (row + 0.5))
+        for column in range(int(placement.WIDTH / pitch))
+        for row in range(int(placement.HEIGHT / pitch))
     ]
     for net in ("GND", "MGND"):
         zones = [zone for zone in board.Zones() if zone.GetNetname() == net]
-        for column in range(int(placement.WIDTH / pitch)):
-            for row in range(int(placement.HEIGHT / pitch)):
-                x, y = pitch * (column + 0.5), pitch * (row + 0.5)
-                if all(
-                    zone.HitTestFilledArea(zone.GetFirstLayer(), at(x + dx, y + dy), 0)
-                    for zone in zones
-                    for dx, dy in around
-                ):
-                    via = pcbnew.PCB_VIA(board)
-                    via.SetPosition(at(x, y))
-                    via.SetWidth(pcbnew.FromMM(0.8))
-                    via.SetDrill(pcbnew.FromMM(0.4))
-                    via.SetNet(board.FindNet(net))
-                    board.Add(via)
+        for x, y in spots:
+            copper = all(
+                zone.HitTestFilledArea(zone.GetFirstLayer(), at(x + dx, y + dy), 0)
+                for zone in zones
+                for dx, dy in around
+            )
+            if copper and not _under_word(ORIGIN[0] + x, ORIGIN[1] + y, words):
+                via = pcbnew.PCB_VIA(board)
+                via.SetPosition(at(x, y))
+                via.SetWidth(pcbnew.FromMM(0.8))
+                via.SetDrill(pcbnew.FromMM(0.4))
+                via.SetNet(board.FindNet(net))
+                board.Add(via)
+
+
+def _under_word(x: float, y: float, words: list[silkscreen.Box]) -> bool:
+    margin = 0.5
+    return any(
+        left - margin < x < right + margin and top - margin < y < bottom + margin
+        for left, top, right, bottom in words
+    )
 
 
 if __name__ == "__main__":

@@ -78,6 +78,7 @@ class Layer:
         """Take in all pads and drawings of the board."""
         self.pcbnew, self.board, self.at = pcbnew, board, at
         self.taken: list[Box] = []
+        self.words: list[Box] = []
         for footprint in board.GetFootprints():
             for pad in footprint.Pads():
                 self.taken.append(self.box(pad.GetBoundingBox(), 0.12))
@@ -142,6 +143,7 @@ class Layer:
             raise ValueError(f"no room on the silkscreen for {words!r} at {x:.1f}, {y:.1f}")
         self.board.Add(text)
         self.taken.append(box)
+        self.words.append(box)
 
     def inside(self, footprint: Any) -> bool:
         """Put a part's reference in the middle of its body, if that is free."""
@@ -180,14 +182,16 @@ class Layer:
                 box = self.box(text.GetBoundingBox(), 0.05)
                 if self.free(box):
                     self.taken.append(box)
+                    self.words.append(box)
                     return True
         return False
 
 
-def write(pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> None:
-    """Write all words. at turns mm on the board into board units.
+def write(pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> list[Box]:
+    """Write all words; return the boxes they fill, in mm of the board file.
 
-    Raises ValueError when something has no room, naming it.
+    at turns mm on the board into board units. Raises ValueError when something
+    has no room, naming it.
     """
     layer = Layer(pcbnew, board, at)
     problems = []
@@ -218,3 +222,4 @@ def write(pcbnew: Any, board: Any, at: Callable[[float, float], Any]) -> None:
     ]
     if problems:
         raise ValueError("\n".join(problems))
+    return layer.words

@@ -206,7 +206,8 @@ uint8_t homing_poll(void)
         motion_cancel();
         return next_phase(1);
     }
-    if (!motion_busy()) {
+    /* The flag is read last: the switch may end the motion at any moment. */
+    if (!motion_busy() && !guard_stopped) {
         return next_phase(0);
     }
     return 0;

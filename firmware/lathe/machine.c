@@ -276,7 +276,9 @@ void machine_poll(void)
     serve_buttons();
     if (machine_state == STATE_HOMING) {
         serve_homing();
-    } else if (machine_state == STATE_RUNNING && !motion_busy()) {
+    } else if (machine_state == STATE_RUNNING && !motion_busy() &&
+               !guard_tripped) {
+        /* The flag is read last: a trip may end the motion at any moment. */
         finished = 1;
         machine_state = STATE_IDLE;
     }

@@ -87,6 +87,23 @@ def test_homing_twice_finds_the_same_place() -> None:
     assert (bench.status().dead_x, bench.status().dead_z) == (17, 8)
 
 
+@on_a_new_chip
+def test_a_switch_reached_while_the_main_loop_looks_whether_the_move_is_over_is_found() -> None:
+    bench = Bench(backlash_x=10)
+    bench.set(dead_max=20)
+    bench.host.home()
+    bench.wait(lambda: bench.axis(Axis.X).pressed, 10.0, every=1e-3)
+    bench.wait(lambda: not bench.axis(Axis.X).pressed, 10.0, every=1e-3)
+    bench.wait(lambda: bench.axis(Axis.X).pressed, 10.0, every=1e-3)
+    # Now the dead steps are counted; all of the short move is in the stream already.
+    bench.run(0.03)
+    assert bench.chip.run_to_address(bench.chip.symbols.code("motion_busy"))
+    bench.abort_stream()
+    bench.chip.set_variable("guard_stopped", 1)
+    bench.run(0.002)
+    assert (bench.state, bench.alarm) == (State.HOMING, (Alarm.NONE, 0))
+
+
 # -- every way to fail -----------------------------------------------------------------------------
 
 

@@ -137,6 +137,21 @@ def test_the_emergency_stop_ends_all_steps_and_takes_the_current_off(moving: str
 
 
 @on_a_new_chip
+def test_a_trip_while_the_main_loop_looks_whether_the_run_is_over_does_not_finish_it() -> None:
+    bench = running_lathe()
+    bench.wait(lambda: bench.axis(Axis.X).slide == -20, 5.0)
+    bench.wait(lambda: bench.axis(Axis.Z).slide > -40, 5.0)
+    # On the last way home; all of it is in the stream already.
+    assert bench.chip.run_to_address(bench.chip.symbols.code("motion_busy"))
+    bench.abort_stream()
+    bench.chip.set_variable("guard_tripped", 0x01)
+    bench.run(0.01)
+    assert bench.alarm == (Alarm.LIMIT, Axis.X)
+    bench.host.reset()
+    assert not bench.status().finished
+
+
+@on_a_new_chip
 def test_a_machine_without_emergency_stop_does_not_look_at_its_pin() -> None:
     bench = Bench()
     bench.set(estop_fitted=0)

@@ -29,6 +29,7 @@ NEAR = Options(start_x=-30, start_z=-30)
 HOMING_TIMEOUT_S = 60.0
 #: The hardware stack has 31 levels; the design allows 20.
 STACK_LEVELS_ALLOWED = 20
+PIE2, CCP2IE = 0xFA0, 0x01
 PINS = {"run": "RD4", "hold": "RD5", "stop": "RD6"}
 
 
@@ -148,6 +149,15 @@ class Bench:
         """Set settings by name."""
         for name, value in values.items():
             self.host.set_setting(SettingId[name.upper()], value)
+
+    def abort_stream(self) -> None:
+        """Do to the step stream what the 1 ms interrupt does when something stops it."""
+        chip = self.chip
+        chip.write(PIE2, chip.read(PIE2) & ~CCP2IE)
+        chip.set_variable("stream_tail", chip.variable("stream_head"))
+        chip.set_variable("speed_tail", chip.variable("speed_head"))
+        chip.set_variable("stream_next", 0)
+        chip.set_variable("stream_flags", 0)
 
     def power_cycle(self, seed: int = 1) -> None:
         """Take the power away for long and bring it back; flash and EEPROM stay."""

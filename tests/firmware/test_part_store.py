@@ -150,9 +150,7 @@ def test_generations_that_wrap_still_tell_the_newer_part() -> None:
         (Command.UPLOAD_BEGIN, struct.pack("<HH", 55, 0), ErrorCode.OUT_OF_RANGE),
         (Command.UPLOAD_BEGIN, struct.pack("<HH", 961, 0), ErrorCode.OUT_OF_RANGE),
         (Command.UPLOAD_BEGIN, struct.pack("<H", 72), ErrorCode.BAD_LENGTH),
-        (Command.PART_READ, struct.pack("<BH", 7, 1), ErrorCode.BAD_OFFSET),
-        (Command.PART_READ, struct.pack("<BH", 7, 960), ErrorCode.BAD_OFFSET),
-        (Command.PART_READ, struct.pack("<BH", 1, 0), ErrorCode.NO_PART),
+        (Command.PART_READ, struct.pack("<BH", 8, 0), ErrorCode.NO_PART),
         (Command.PART_INFO, b"\x08", ErrorCode.OUT_OF_RANGE),
         (Command.STATUS, b"\x00", ErrorCode.BAD_LENGTH),
     ],
@@ -167,6 +165,24 @@ def test_a_request_out_of_place_is_refused_and_changes_nothing(
     link.request(Command.HELLO)
     assert bench.refusal(lambda: link.request(command, payload)) is answer
     assert bench.chip.nonvolatile_counts == before
+
+
+@on_a_new_chip
+def test_reading_beside_or_behind_a_part_is_refused() -> None:
+    bench = little_pin.lathe_with_pin()
+    slot = bench.host.find("little-pin").slot
+    link = Link(bench.lathe.port)
+    link.request(Command.HELLO)
+
+    def read(number: int, offset: int) -> ErrorCode:
+        payload = struct.pack("<BH", number, offset)
+        return bench.refusal(lambda: link.request(Command.PART_READ, payload))
+
+    length = len(little_pin.image())
+    assert read(slot, length // 32 * 32) is ErrorCode.OK
+    assert read(slot, (length // 32 + 1) * 32) is ErrorCode.BAD_OFFSET
+    assert read(slot, 1) is ErrorCode.BAD_OFFSET
+    assert read((slot + 1) % 8, 0) is ErrorCode.NO_PART
 
 
 @on_a_new_chip

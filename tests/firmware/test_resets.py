@@ -83,6 +83,8 @@ def test_a_main_loop_that_hangs_is_ended_by_the_watchdog_within_half_a_second() 
 def test_a_stack_overflow_is_told_by_its_cause() -> None:
     bench = running_lathe()
     bench.lathe.unplug()
+    # The next instruction but few is a call.
+    assert bench.chip.run_to_address(bench.chip.symbols.code("machine_poll"))
     bench.chip.write(STACK_POINTER, 30)
     bench.wait(lambda: len(bench.chip.resets) > 1, 0.1, 1e-4)
     bench.chip.clear_statistics()

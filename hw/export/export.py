@@ -106,7 +106,7 @@ def main(arguments: list[str]) -> int:
         "--mode-multipage",
         "--include-border-title",
         "-l",
-        "F.Cu,B.Cu,F.Silkscreen,F.Fab",
+        "F.Cu,B.Cu,F.Silkscreen",
         "--common-layers",
         "Edge.Cuts",
         "-o",

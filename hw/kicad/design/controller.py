@@ -140,7 +140,7 @@ def _clock(sheet: Sheet) -> None:
     sheet.wire("C1.1", (94, 79), (94, 85), "C2.1")
     ground(sheet, "GND", (94, 85))
     sheet.label("OSC2", (121, 79))
-    sheet.label("OSC1", (121, 85))
+    sheet.label("OSC1", (131, 84))
 
 
 def _usb(sheet: Sheet) -> None:

@@ -82,7 +82,7 @@ def _icsp(sheet: Sheet) -> None:
 
 
 def _step_direction(sheet: Sheet) -> None:
-    sheet.frame((10, 66), (152, 130))
+    sheet.frame((10, 66), (156, 130))
     sheet.text("Step and direction for outside drivers; link JP1 to switch it on", (12, 70), 1.5)
     sheet.place(
         "U12",

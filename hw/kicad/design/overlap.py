@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from design.sheet import STEP, Box, Sheet, split_wires, text_places
 
-CHARACTER = 0.86
+CHARACTER = 0.95
 HEIGHT = 1.15
 
 

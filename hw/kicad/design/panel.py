@@ -49,7 +49,7 @@ def draw() -> Sheet:
 
 
 def _buttons(sheet: Sheet) -> None:
-    sheet.text("Run, hold, stop: on the board and on the panel", (10, 14), 1.5)
+    sheet.text("Run, hold, stop: on the board and on the panel", (12, 14), 1.5)
     network(sheet, "RN6", "10k", (38, 24))
     supply(sheet, "+5V", "RN6.1", 1)
     for index, (name, button, series, cap) in enumerate(BUTTONS):

@@ -139,6 +139,7 @@ def test_the_emergency_stop_ends_all_steps_and_takes_the_current_off(moving: str
 @on_a_new_chip
 def test_a_trip_while_the_main_loop_looks_whether_the_run_is_over_does_not_finish_it() -> None:
     bench = running_lathe()
+    bench.wait(lambda: bench.axis(Axis.Z).slide < -90, 5.0)
     bench.wait(lambda: bench.axis(Axis.X).slide == -20, 5.0)
     bench.wait(lambda: bench.axis(Axis.Z).slide > -40, 5.0)
     # On the last way home; all of it is in the stream already.

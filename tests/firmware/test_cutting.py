@@ -47,6 +47,11 @@ diameter = {diameter}
 THICK_FIRST = FACE + "".join(text.format(start=0.0) for text in (THICK, MIDDLE, THIN))
 THIN_FIRST = FACE + THIN.format(start=0.0) + MIDDLE.format(start=-1.0) + THICK.format(start=-2.0)
 NO_FACE = THICK.format(start=0.2) + THIN.format(start=0.2)
+DEEPER_OVER_STEPS = (
+    THICK.format(start=0.2)
+    + MIDDLE.format(start=0.2).replace("2.6", "3.0")
+    + THIN.format(start=0.2).replace("-1.0", "-3.6")
+)
 TWICE = THICK_FIRST + THICK.format(start=0.0) + FACE
 HOLLOW_FACE = """
 [[operation]]
@@ -110,6 +115,7 @@ def test_a_faced_pin_of_three_diameters_is_right_whatever_the_backlash(
         pytest.param(THICK_FIRST, 0.0, id="thick first"),
         pytest.param(THIN_FIRST, 0.03, id="thin first"),
         pytest.param(NO_FACE, 0.03, id="not faced"),
+        pytest.param(DEEPER_OVER_STEPS, 0.03, id="one pass over earlier steps"),
         pytest.param(TWICE, 0.0, id="again what is already cut"),
         pytest.param(HOLLOW_FACE, 0.0, id="face that leaves a middle"),
     ],

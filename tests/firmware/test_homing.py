@@ -7,6 +7,7 @@ import pytest
 from simulated.bench import Bench
 from simulated.processes import on_a_new_chip
 from tornillo.protocol import Alarm, Axis, ErrorCode, State
+from virtual_lathe.chip import CYCLES_PER_SECOND
 from virtual_lathe.machine import AxisName
 
 PARK = -20
@@ -207,13 +208,34 @@ def wait_for_repeat(bench: Bench, name: AxisName) -> None:
         bench.wait(lambda: not bench.axis(name).pressed, 10.0, every=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("first", "later", "median"), [(0, 2, 12), (2, 0, 10), (0, 1, 11), (1, 0, 10)]
+)
 @on_a_new_chip
-def test_a_spread_within_the_setting_gives_the_median() -> None:
-    bench = Bench(backlash_x=10, backlash_z=10)
+def test_a_spread_within_the_setting_gives_the_median(first: int, later: int, median: int) -> None:
+    bench = Bench(backlash_x=10, backlash_z=10, switch_travel_x=first)
     bench.host.home()
     wait_for_repeat(bench, AxisName.X)
-    bench.lathe.machine.options(AxisName.X).switch_travel = 2
+    bench.lathe.machine.options(AxisName.X).switch_travel = later
     bench.lathe.machine.break_switch_wire(AxisName.X, broken=False)
     bench.wait(lambda: bench.state is not State.HOMING, 30.0)
     assert bench.homed
-    assert bench.status().dead_x == 12
+    assert bench.status().dead_x == median
+
+
+@pytest.mark.parametrize("rate", [40, 100, 200])
+@on_a_new_chip
+def test_the_latch_rate_is_the_setting_but_slow_enough_for_the_input_filter(rate: int) -> None:
+    bench = Bench(backlash_x=5)
+    bench.set(latch_rate=rate, homing_repeats=1)
+    bench.host.home()
+    bench.wait(lambda: bench.axis(Axis.X).pressed, 10.0, every=1e-3)
+    bench.wait(lambda: not bench.axis(Axis.X).pressed, 10.0, every=1e-3)
+    bench.wait(lambda: bench.axis(Axis.X).pressed, 10.0, every=1e-3)
+    bench.run(0.012)
+    bench.chip.log_pins("RD0", "RD1", "RD2", "RD3")
+    bench.run(0.11)
+    first, second = bench.chip.pin_changes()[:2]
+    assert (second[0] - first[0]) == CYCLES_PER_SECOND // min(rate, 100)
+    bench.wait(lambda: bench.state is not State.HOMING, 10.0)
+    assert bench.status().dead_x == 5

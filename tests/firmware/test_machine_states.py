@@ -10,7 +10,8 @@ import pytest
 from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import branch, on_a_new_chip
-from tornillo.protocol import Alarm, Axis, ErrorCode, State
+from tornillo.link import Link
+from tornillo.protocol import Alarm, Axis, Command, ErrorCode, State
 from virtual_lathe.chip import Drive
 from virtual_lathe.machine import AxisName
 
@@ -220,9 +221,11 @@ def test_nothing_is_stored_while_the_machine_moves() -> None:
     host.run()
     bench.run(0.1)
     before = bench.chip.nonvolatile_counts
+    link = Link(bench.lathe.port)
     image = little_pin.image("other")
     attempts: list[Callable[[], object]] = [
         lambda: host.upload(image),
+        lambda: link.request(Command.UPLOAD_COMMIT),
         lambda: host.delete(7),
         lambda: host.select(7),
         lambda: bench.set(rapid_rate_x=500),

@@ -120,23 +120,51 @@ def test_run_with_a_slot_cuts_that_part_and_not_the_selected_one() -> None:
     little_pin.assert_cut_exactly(bench)
 
 
-@on_a_new_chip
-def test_generations_that_wrap_still_tell_the_newer_part() -> None:
-    bench = little_pin.lathe_with_pin()
-    slot = bench.host.find("little-pin").slot
+def slot_at(slot: int) -> int:
+    """Address of a slot in flash."""
+    return 0x6000 + 1024 * slot
+
+
+def header(generation: int, image: bytes) -> bytes:
+    """Return the header of a stored part, as firmware/store/parts.h describes it."""
+    fields = struct.pack("<HHHH", 0x4E54, generation, len(image), crc16(image))
+    return fields + struct.pack("<H", crc16(fields))
+
+
+def store(bench: Bench, slot: int, generation: int, image: bytes) -> None:
+    """Put a part straight into the flash, and forget which one was selected."""
     memory = bench.chip.save()
-    header = struct.pack("<HHHH", 0x4E54, 0xFFFF, len(little_pin.image()), 0)
-    header = header[:6] + struct.pack("<H", crc16(little_pin.image()))
     flash = bytearray(memory.flash)
-    at = 0x6000 + 1024 * slot
-    flash[at : at + 10] = header + struct.pack("<H", crc16(header))
-    bench.chip.restore(NonVolatile(bytes(flash), memory.eeprom[:0xE0] + b"\xff" * 32))
-    bench.host.upload(little_pin.image("newer"))
-    assert bench.host.find("newer").generation == 0
-    bench.chip.restore(
-        NonVolatile(bench.chip.save().flash, bench.chip.save().eeprom[:0xE0] + b"\xff" * 32)
-    )
+    content = header(generation, image).ljust(64, b"\xff") + image
+    flash[slot_at(slot) : slot_at(slot) + len(content)] = content
+    eeprom = memory.eeprom[:0xE0] + b"\xff" + memory.eeprom[0xE1:]
+    bench.chip.restore(NonVolatile(bytes(flash), eeprom))
+
+
+@pytest.mark.parametrize("generation", [7, 0x7FFF, 0xFFFE, 0xFFFF])
+@on_a_new_chip
+def test_the_newest_part_is_told_by_its_generation_even_when_that_wraps(generation: int) -> None:
+    bench = Bench()
+    store(bench, 2, generation, little_pin.image("older"))
+    store(bench, 1, (generation + 1) & 0xFFFF, little_pin.image("newer"))
     assert selected(bench) == "newer"
+    bench.set(zero_x=little_pin.ZERO_X, zero_z=little_pin.ZERO_Z)
+    bench.host.upload(little_pin.image("newest"))
+    assert bench.host.find("newest").generation == (generation + 2) & 0xFFFF
+
+
+@pytest.mark.parametrize(("older", "newer"), [(1, 5), (5, 1)])
+@on_a_new_chip
+def test_of_two_parts_with_one_name_only_the_newer_survives_the_next_start(
+    older: int, newer: int
+) -> None:
+    bench = Bench()
+    store(bench, older, 8, little_pin.image(depth_of_cut=8))
+    store(bench, newer, 9, little_pin.image(depth_of_cut=9))
+    bench.power_cycle()
+    (part,) = bench.host.parts()
+    assert (part.slot, part.generation) == (newer, 9)
+    assert bench.host.read(newer) == little_pin.image(depth_of_cut=9)
 
 
 # -- uploads out of order --------------------------------------------------------------------------

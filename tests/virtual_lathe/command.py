@@ -23,6 +23,7 @@ from types import FrameType
 from .chip import EEPROM_BYTES, FLASH_BYTES, NonVolatile
 from .lathe import BUTTONS, DEFAULT_FIRMWARE, Options, VirtualLathe
 from .machine import AxisName
+from .motor import PULL_IN
 from .terminal import Terminal
 from .usb_host import UsbError
 
@@ -66,7 +67,7 @@ def build_parser() -> argparse.ArgumentParser:
     add("--start-z", type=int, default=-900, metavar="STEPS", help="slide Z at power-on")
     add("--part-zero-x", type=int, default=-3575, metavar="STEPS", help="spindle axis")
     add("--part-zero-z", type=int, default=-8000, metavar="STEPS", help="front of the part")
-    add("--motor-limit", type=float, default=1100.0, metavar="STEPS/S")
+    add("--motor-limit", type=float, default=PULL_IN, metavar="STEPS/S")
     add("--cut-rate-limit", type=float, default=900.0, metavar="STEPS/S")
     add("--switch-bounce", type=int, default=0, metavar="US")
     add("--switch-noise", type=int, default=0, metavar="HZ")

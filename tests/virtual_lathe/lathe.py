@@ -13,6 +13,7 @@ from typing import Any
 from .chip import CYCLES_PER_SECOND, Chip, Drive, InterruptCost, NonVolatile, Stop
 from .configuration import wrong_words
 from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine
+from .motor import PULL_IN, PULL_OUT
 from .part import WantedPart, read_part
 from .serial_port import SerialPort
 from .usb_host import UsbHost
@@ -53,7 +54,9 @@ class Options:
     start_z: int = -900
     part_zero_x: int = -3575
     part_zero_z: int = -8000
-    pull_in: float = 1100.0
+    pull_in: float = PULL_IN
+    pull_out: float = PULL_OUT
+    acceleration: float = 0.0
     cut_rate_limit: float = 900.0
     isr_limit: int = 0
     dry_symbol: str = ""
@@ -118,7 +121,8 @@ class VirtualLathe:
             slack=random.Random(options.seed + int(name)).randint(0, backlash),
             switch_travel=travel,
             pull_in=options.pull_in,
-            pull_out=options.pull_in,
+            pull_out=options.pull_out,
+            acceleration=options.acceleration,
         )
 
     def _stock(self) -> Stock:

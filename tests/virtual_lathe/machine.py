@@ -7,6 +7,7 @@ import ctypes
 from dataclasses import dataclass
 from enum import IntEnum
 
+from .motor import PULL_IN, PULL_OUT
 from .native_library import AxisSetupC, AxisStateC, FaultC, MoveC, library
 
 BATCH = 4096
@@ -45,8 +46,8 @@ class AxisOptions:
     switch_travel: int = 0
     switch_broken: bool = False
     beyond: int = 60
-    pull_in: float = 1100.0
-    pull_out: float = 1100.0
+    pull_in: float = PULL_IN
+    pull_out: float = PULL_OUT
     acceleration: float = 0.0
 
 

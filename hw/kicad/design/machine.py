@@ -134,7 +134,7 @@ def _limits(sheet: Sheet) -> None:
 
 
 def _index(sheet: Sheet) -> None:
-    sheet.text("Spindle index: open-collector sensor, low = mark", (12, 103), 1.5)
+    sheet.text("Spindle index: open-collector sensor, low = mark", (12, 100), 1.5)
     terminal(sheet, "J9", "INDEX", 3, (14, 116), mirrored=True)
     sheet.wire("J9.1", (24, 114), (24, 111))
     sheet.power("+5VM", (24, 111))

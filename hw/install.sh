@@ -35,7 +35,7 @@ command -v apt-get >/dev/null || refuse 'there is no apt-get.'
 grep -q 'VERSION_CODENAME=bookworm' /etc/os-release || refuse 'this is not Debian 12.'
 
 sources=/etc/apt/sources.list.d/bookworm-backports.sources
-if ! apt-cache policy | grep -q "n=$KICAD"; then
+if [[ "$(apt-cache policy)" != *"n=$KICAD"* ]]; then
     echo 'Adding Debian backports to the package sources.'
     "${as_root[@]}" tee "$sources" >/dev/null <<EOF
 Types: deb

@@ -108,7 +108,7 @@ licensed() {
 # Every room says what lives in it.
 readmes() {
     local room missing=0
-    for room in firmware firmware/*/ host-cli tests tests/*/; do
+    for room in firmware firmware/*/ host-cli hw tests tests/*/; do
         [ -n "$(git ls-files --cached --others --exclude-standard "$room")" ] ||
             continue
         [ -f "$room/README.md" ] || {
@@ -138,6 +138,7 @@ step "ruff format" "$venv/bin/ruff" format --quiet --diff .
 step "mypy host-cli" in_host_cli "$venv/bin/mypy"
 step "mypy firmware and tests" "$venv/bin/mypy" firmware/toolchain firmware/link \
     docs tests
+step "mypy hw" "$venv/bin/mypy" --config-file hw/mypy.ini hw
 step "protocol files up to date" "$venv/bin/python" \
     firmware/link/generate_protocol.py --check
 step "documentation tables up to date" "$venv/bin/python" \

@@ -18,8 +18,9 @@
  *
  * Levels are spread evenly, so no pass is deeper than the depth of cut and
  * none is a sliver; the last is exactly on size. A cylinder with a finish
- * allowance gets one more pass for it at the finish feed. Material that earlier operations
- * have removed is not cut again. At the end X, then Z go back to park.
+ * allowance gets one more pass for it at the finish feed. Material that
+ * earlier operations have removed is not cut again. At the end X, then Z go
+ * back to park.
  *
  * Main loop only. The part must have passed part_check().
  */

@@ -2,14 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shrink the assembly that SDCC generates, looking at the whole program at once.
 
-usage: shrink_assembly.py [--report] [--registers N] [--asm FILE.asm]... \
-    -o OUT.asm FILE.asm [FILE.asm ...]
+usage: shrink_assembly.py [--report] [--registers N] [--levels N] \
+    [--asm FILE.asm]... -o OUT.asm FILE.asm [FILE.asm ...]
 
 Joins the files into one. SDCC compiles each function as if anything could call
 it at any time; here all functions and their callers are known, there is no
 recursion, and nothing is called through a pointer, so registers and arguments
 can have fixed places (shrink_registers.py, shrink_arguments.py), what nobody
-needs can go (shrink_simplify.py), and calls can be short (shrink_layout.py).
+needs can go (shrink_simplify.py, shrink_compares.py), a function called once can
+stand in the place of the call (shrink_inline.py), of equal pieces one can stay
+(shrink_fold.py: at most N levels of the return stack, interrupts included, are
+used), and calls can be short (shrink_layout.py).
 Stops with a message, and writes nothing, at anything it does not understand.
 """
 
@@ -20,10 +23,14 @@ from collections import Counter
 from pathlib import Path
 
 from shrink_arguments import check_stack, static_arguments
-from shrink_banks import drop_bank_selections
+from shrink_banks import drop_bank_selections, selected_by
+from shrink_compares import compare_on, compare_words
 from shrink_flow import Liveness
+from shrink_fold import Folder
+from shrink_inline import inline_single_calls
 from shrink_jumps import return_literals, return_values, shorten_ways, tail_calls
 from shrink_layout import check_reach, order, shorten
+from shrink_levels import levels_of, outside_levels
 from shrink_model import Program, RefusalError, read_program, write_program
 from shrink_registers import (
     Interference,
@@ -40,6 +47,7 @@ from shrink_simplify import add_into_pointer, drop_repeated_loads, drop_unneeded
 
 MAIN = "_main"
 INTERRUPT = "_low_interrupt"
+HIGH_INTERRUPT_LEVELS = LOW_INTERRUPT_LEVELS = 1  # besides what they call
 LIBRARY = ("__mul", "__div", "__mod")
 
 
@@ -50,11 +58,14 @@ class TooManyError(Exception):
 class Shrinker:
     """Takes a program through all steps; `steps` holds the bytes each saved."""
 
-    def __init__(self, program: Program, assembly: str, registers: int, saving: set[str]) -> None:
+    def __init__(
+        self, program: Program, assembly: str, registers: int, levels: int, saving: set[str]
+    ) -> None:
         """Find what is called from where; RefusalError where that is not sound."""
         self.program = program
         self.assembly = assembly
         self.limit = registers
+        self.levels = levels
         self.steps: Counter[str] = Counter()
         self.order: list[str] = []
         self.slots: list[str] = []
@@ -125,12 +136,35 @@ class Shrinker:
         self.repairs = drop_bank_selections(self.program, self.assembly, self.roots)
         self._count("bank selections", before)
         before = self.size()
+        inline_single_calls(self.program, self.roots | self.interrupt, {MAIN})
+        shorten_ways(self.program)
+        self._count("called once", before)
+        before = self.size()
+        compare_words(self.program, self.live())
+        compare_on(self.program)
+        drop_repeated_loads(self.program, self.live())
+        drop_unneeded(self.program, self.live(), places=True)
+        shorten_ways(self.program)
+        self._count("compares", before)
+        before = self.size()
         tail_calls(self.program)
         return_literals(self.program)
         self._count("returns", before)
-        self.order = order(self.program)
+        self._fold()
         self.steps["short calls"] += shorten(self.program, self.order)
         check_reach(self.program, self.order)
+
+    def _fold(self) -> None:
+        """Keep one of equal pieces of code, but leave what an interrupt executes as it is."""
+        outside = outside_levels(self.assembly)
+        interrupts = HIGH_INTERRUPT_LEVELS + LOW_INTERRUPT_LEVELS
+        if INTERRUPT in self.program.functions:
+            interrupts += levels_of(self.program, outside, INTERRUPT)
+        bank = selected_by(self.program, self.assembly)
+        fixed = self.interrupt & set(self.program.functions)
+        folder = Folder(self.program, order(self.program), fixed, bank, outside)
+        self.order = folder.run(MAIN, self.levels - interrupts)
+        self.steps.update(folder.saved)
 
     def _count(self, step: str, before: int) -> None:
         self.steps[step] += before - self.size()
@@ -199,7 +233,7 @@ def heaviest(program: Program, kept: set[str]) -> str:
     return best
 
 
-def shrink(files: list[Path], assembly: list[Path], registers: int) -> tuple[str, str]:
+def shrink(files: list[Path], assembly: list[Path], registers: int, levels: int) -> tuple[str, str]:
     """Return the program as one assembly text, and the report.
 
     As long as more register bytes are needed than allowed, one function more
@@ -210,7 +244,7 @@ def shrink(files: list[Path], assembly: list[Path], registers: int) -> tuple[str
     while True:
         program = read_program(files)
         before = _sizes(program)
-        shrinker = Shrinker(program, outside, registers, saving)
+        shrinker = Shrinker(program, outside, registers, levels, saving)
         try:
             shrinker.run()
             break
@@ -247,10 +281,11 @@ def main() -> None:
     parser.add_argument("-o", dest="output", type=Path, required=True)
     parser.add_argument("--asm", action="append", type=Path, default=[])
     parser.add_argument("--registers", type=int, default=48)
+    parser.add_argument("--levels", type=int, default=20)
     parser.add_argument("--report", action="store_true")
     options = parser.parse_args()
     try:
-        text, report = shrink(options.files, options.asm, options.registers)
+        text, report = shrink(options.files, options.asm, options.registers, options.levels)
     except RefusalError as refusal:
         sys.exit(f"shrink_assembly: {refusal}")
     options.output.write_text(text)

@@ -10,6 +10,7 @@ of the access bank need none at all.
 
 import re
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from shrink_flow import successors
@@ -97,6 +98,12 @@ def assembly_sections(text: str) -> tuple[dict[str, str], set[str]]:
         elif variable and kind == "udata":
             where[variable.group(1)] = section
     return where, access
+
+
+def selected_by(program: Program, assembly: str) -> Callable[[str], str]:
+    """Return what tells the section that selecting a variable's bank selects."""
+    where, _ = assembly_sections("\n".join([*program.data, assembly]))
+    return lambda operand: where.get(symbol(operand), symbol(operand))
 
 
 def use_access_bank(program: Program, access: set[str]) -> None:

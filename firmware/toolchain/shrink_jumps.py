@@ -3,6 +3,7 @@
 
 import itertools
 
+from shrink_compares import branch_over_jumps
 from shrink_model import Function, Line, Program
 from shrink_registers import drop_lines
 from shrink_simplify import after_skip
@@ -31,6 +32,7 @@ def shorten_ways(program: Program) -> None:
             _drop_unreachable(function)
             _drop_jumps_to_next(function)
             _branch_on_flags(function)
+            branch_over_jumps(function, BRANCH_REACH)
 
 
 def _destinations(body: list[Line]) -> dict[str, Line]:
@@ -163,13 +165,20 @@ def return_values(program: Program) -> None:
             and body[index + 2].op == "RETURN"
             and not line.op
         }
+        entered = []
         for index, (store, jump) in enumerate(itertools.pairwise(body)):
-            if jump.op != "BRA" or store.op not in ("MOVWF", "CLRF") or after_skip(body, index):
+            if store.op not in ("MOVWF", "CLRF") or after_skip(body, index):
                 continue
-            if "@r0x" in store.args[0] and ends.get(jump.args[0]) == store.args[0]:
-                jump.op, jump.args = "RETURN", []
+            end = jump.args[0] if jump.op == "BRA" else jump.label
+            if "@r0x" in store.args[0] and ends.get(end) == store.args[0]:
+                if jump.op == "BRA":
+                    jump.op, jump.args = "RETURN", []
+                else:
+                    entered.append(index + 1)
                 if store.op == "CLRF":
                     store.args = ["WREG"]
+        for index in reversed(entered):
+            body.insert(index, Line("RETURN"))
 
 
 def return_literals(program: Program) -> int:

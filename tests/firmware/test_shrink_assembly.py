@@ -359,9 +359,8 @@ def test_private_names_of_two_files_stay_apart(tmp_path: Path) -> None:
 
 
 def test_the_report_names_bytes_before_and_after(tmp_path: Path) -> None:
-    result = run_tool(
-        tmp_path, function("_main", "CLRF _LATB; CALL _leaf"), LEAF, options="--report"
-    )
+    main = function("_main", "CLRF _LATB; CALL _leaf")
+    result = run_tool(tmp_path, main, LEAF, options="--report")
     assert re.search(r"^t +28 +16$", result.stdout, re.MULTILINE)
 
 
@@ -385,15 +384,14 @@ def test_what_is_not_understood_is_refused(tmp_path: Path, body: str, message: s
 
 
 def test_arithmetic_of_the_library_may_not_be_used_on_both_sides(tmp_path: Path) -> None:
-    message = refusal(
-        tmp_path, function("_main", "CALL __mulint"), INTERRUPT.replace("_leaf", "__mulint")
-    )
+    interrupt = INTERRUPT.replace("_leaf", "__mulint")
+    message = refusal(tmp_path, function("_main", "CALL __mulint"), interrupt)
     assert "called by interrupt and main loop: __mulint" in message
 
 
 def test_initialised_data_are_refused(tmp_path: Path) -> None:
-    head = HEAD + "idata_t_0\tidata\n_z\tDB\t0x01\n"
-    assert "initialised data" in refusal(tmp_path, LEAF.replace("_leaf", "_main"), head=head)
+    main, head = LEAF.replace("_leaf", "_main"), HEAD + "idata_t_0\tidata\n_z\tDB\t0x01\n"
+    assert "initialised data" in refusal(tmp_path, main, head=head)
 
 
 def test_hand_written_code_may_not_use_registers_or_call_c(tmp_path: Path) -> None:

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
-TOOL = ROOT / "firmware/toolchain/shrink_assembly.py"
+TOOL = Path(__file__).parents[2] / "firmware/toolchain/shrink_assembly.py"
 
 HEAD = """
 STATUS	equ	0xfd8
@@ -354,8 +353,8 @@ def test_private_names_of_two_files_stay_apart(tmp_path: Path) -> None:
         [sys.executable, TOOL, "-o", "out.asm", "one.asm", "two.asm"], cwd=tmp_path, check=True
     )
     text = (tmp_path / "out.asm").read_text()
-    assert "_same__one:\n\tCLRF\t_LATB" in text
-    assert "_same__two:\n\tCLRF\t_LATC" in text
+    for name, latch in (("one", "LATB"), ("two", "LATC")):
+        assert f"_same__{name}:\n\tCLRF\t_{latch}" in text
 
 
 def test_the_report_names_bytes_before_and_after(tmp_path: Path) -> None:
@@ -390,8 +389,8 @@ def test_arithmetic_of_the_library_may_not_be_used_on_both_sides(tmp_path: Path)
 
 
 def test_initialised_data_are_refused(tmp_path: Path) -> None:
-    main, head = LEAF.replace("_leaf", "_main"), HEAD + "idata_t_0\tidata\n_z\tDB\t0x01\n"
-    assert "initialised data" in refusal(tmp_path, main, head=head)
+    head = HEAD + "idata_t_0\tidata\n_z\tDB\t0x01\n"
+    assert "initialised data" in refusal(tmp_path, LEAF.replace("_leaf", "_main"), head=head)
 
 
 def test_hand_written_code_may_not_use_registers_or_call_c(tmp_path: Path) -> None:

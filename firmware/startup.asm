@@ -2,7 +2,7 @@
 ; SPDX-License-Identifier: Apache-2.0
 ;
 ; SDCC expects FSR1 and FSR2 at the end of the stack and TBLPTRU = 0. There is
-; no copying of initialised variables: the build refuses any (check_image.py).
+; no copying of initialised variables: repair_assembly.py refuses them.
 ; Clearing 2 KB takes 0.5 ms.
 
         include <p18f4550.inc>

@@ -23,6 +23,7 @@ AXIS_ALARMS = frozenset(
         Alarm.LIMIT,
         Alarm.WRONG_SWITCH,
         Alarm.DEAD_STEPS_SPREAD,
+        Alarm.STOPPED_HOMING,
     }
 )
 

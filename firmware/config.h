@@ -24,14 +24,6 @@
 #error "SETTLE_MS must be 1 to 80 ms"
 #endif
 
-/* Consecutive equal 1 ms samples before an input counts as changed. Range
-   2..20. Interference shorter than this many ms never counts; a button's
-   bounce of up to 5 ms is over at the second look. */
-#define FILTER_SAMPLES 4
-#if FILTER_SAMPLES < 2 || FILTER_SAMPLES > 20
-#error "FILTER_SAMPLES must be 2 to 20"
-#endif
-
 /* Where homing leaves the axes, steps from the switch. Range 1..200: enough
    that interference or heat does not close the switch again. */
 #define PARK_STEPS 20

@@ -19,7 +19,7 @@ PROGRAM = """
 #pragma config WDT=OFF, XINST=OFF, LVP=OFF, FOSC=HSPLL_HS
 volatile uint8_t reset_rcon, reset_stkptr, go;
 volatile uint16_t a, b, product, quotient, rest;
-volatile uint32_t c, d, long_quotient;
+volatile uint32_t c, d, long_product, long_quotient;
 void low_interrupt(void) __interrupt(2) {}
 void main(void)
 {
@@ -28,6 +28,7 @@ void main(void)
             product = a * b;
             quotient = a / b;
             rest = a % b;
+            long_product = c * d;
             long_quotient = c / d;
             go = 0;
         }
@@ -78,4 +79,5 @@ def test_products_quotients_and_rests_are_those_of_whole_numbers(tmp_path: Path)
         assert chip.variable("product", 2) == a * b & 0xFFFF, (a, b)
         assert chip.variable("quotient", 2) == a // b, (a, b)
         assert chip.variable("rest", 2) == a % b, (a, b)
+        assert chip.variable("long_product", 4) == c * d & 0xFFFFFFFF, (c, d)
         assert chip.variable("long_quotient", 4) == c // d, (c, d)

@@ -9,19 +9,11 @@
 #ifndef CONFIG_H
 #define CONFIG_H
 
-/* Instruction clock: 48 MHz / 4. The step times, the 1 ms tick and USB all
-   hang on it; the configuration words in config.asm belong to it. */
-#define CYCLES_PER_SECOND 12000000ul
-
-/* period in cycles = RATE_TO_PERIOD / (rate in 1/256 step/s) */
-#define RATE_TO_PERIOD (CYCLES_PER_SECOND * 256ul)
-
-/* Rest between two moves that differ in axis or direction, ms. Range 1..80.
-   Long enough for a rotor of this size to stop swinging after one step. */
-#define SETTLE_MS 10
-#define SETTLE_PERIOD (CYCLES_PER_SECOND / 1000ul * SETTLE_MS)
-#if SETTLE_MS < 1 || SETTLE_MS > 80
-#error "SETTLE_MS must be 1 to 80 ms"
+/* Rest before an axis turns back, ms. Range 1..80. Long enough for a rotor of
+   this size to stop swinging after a step at its start/stop speed. */
+#define REST_MS 10
+#if REST_MS < 1 || REST_MS > 80
+#error "REST_MS must be 1 to 80 ms"
 #endif
 
 /* Where homing leaves the axes, steps from the switch. Range 1..200: enough
@@ -30,6 +22,9 @@
 #if PARK_STEPS < 1 || PARK_STEPS > 200
 #error "PARK_STEPS must be 1 to 200"
 #endif
+
+/* Shortest step pulse, us: what the step interrupt takes anyway. */
+#define PULSE_LEAST_US 5
 
 /* Fast approach gives up after the travel and this many steps more. */
 #define HOMING_MARGIN_STEPS 400

@@ -7,6 +7,7 @@
 #include "link/commands.h"  /* reset cause */
 #include "link/frame.h"     /* frame_poll */
 #include "link/protocol.h"  /* reset causes */
+#include "motion/ramp.h"    /* speed */
 #include "motion/stream.h"  /* step timer */
 #include "panel/inputs.h"   /* buttons */
 #include "panel/led.h"      /* status LED */
@@ -67,6 +68,7 @@ void low_interrupt(void) __interrupt(2)
         tick_count();
         inputs_tick();
         guard_tick();
+        ramp_tick();
         usb_tick();
     }
 }

@@ -5,7 +5,7 @@
 #include "config.h"         /* margins */
 #include "lathe/guard.h"    /* stops the stream at a switch */
 #include "link/protocol.h"  /* alarms, axes, settings */
-#include "motion/motion.h"  /* moves */
+#include "motion/path.h"    /* moves */
 #include "motion/stream.h"  /* positions */
 #include "panel/inputs.h"   /* switches */
 #include "store/settings.h" /* rates, repeats */
@@ -17,10 +17,13 @@ enum phase { PHASE_SEEK, PHASE_LEAVE, PHASE_LATCH, PHASE_COUNT, PHASE_PARK };
 
 #define REPEATS_MAX 9
 
+/* Longer than the input filter takes. */
+#define FILTER_MS 6
+
 uint8_t homing_axis;
 
 static uint8_t phase;
-static uint8_t offered; /* the phase's only move has been taken */
+static uint8_t offered; /* of the phase: its move, then a wait */
 static int16_t target;
 static int16_t start; /* position at the start of the phase */
 static int16_t rate;
@@ -58,7 +61,7 @@ static void seek(uint8_t next, int16_t distance, int16_t steps_per_second,
     rate = steps_per_second;
     offered = 0;
     guard_stop_at(own_switch(), until_pressed);
-    motion_begin();
+    path_begin();
 }
 
 static int16_t latch_rate(void)
@@ -147,7 +150,7 @@ static uint8_t conclude(void)
         motion_dead_z = count;
     }
     settings[x ? SETTING_DEAD_X : SETTING_DEAD_Z] = count;
-    motion_set_home(homing_axis);
+    path_set_home(homing_axis);
     seek(PHASE_PARK, -PARK_STEPS, settings[SETTING_HOME_RATE], 0);
     guard_stop_at(0, 0);
     return 0;
@@ -203,11 +206,11 @@ uint8_t homing_poll(void)
         return ALARM_WRONG_SWITCH;
     }
     if (guard_stopped) {
-        motion_cancel();
+        path_cancel();
         return next_phase(1);
     }
     /* The flag is read last: the switch may end the motion at any moment. */
-    if (!motion_busy() && !guard_stopped) {
+    if (!path_busy() && !guard_stopped) {
         return next_phase(0);
     }
     return 0;
@@ -215,13 +218,17 @@ uint8_t homing_poll(void)
 
 uint8_t homing_source(void)
 {
-    if (offered) {
-        return 0;
+    if (offered == 0) {
+        path_next.kind = SEGMENT_LINE | SEGMENT_RAPID;
+        path_next.dx = homing_axis == AXIS_X ? target - start : 0;
+        path_next.dz = homing_axis == AXIS_X ? 0 : target - start;
+        path_next.mark = 0;
+        path_rate = (uint32_t)rate << 8;
+    } else {
+        /* The filter must have seen the last step before the end counts. */
+        path_next.kind = SEGMENT_WAIT;
+        path_next.dx = FILTER_MS;
     }
-    offered = 1;
-    move_axis = homing_axis;
-    move_to = target;
-    move_rate = (uint32_t)rate << 8;
-    move_mark = 0;
-    return 1;
+    offered++;
+    return offered <= 2;
 }

@@ -2,16 +2,19 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "lathe/machine.h"
+#include "config.h"           /* shortest pulse */
 #include "lathe/guard.h"      /* trips */
 #include "lathe/homing.h"     /* homing phases */
 #include "lathe/part_check.h" /* before every run */
 #include "lathe/passes.h"     /* moves of a part */
 #include "link/protocol.h"    /* states, alarms, errors */
-#include "motion/motion.h"    /* chains */
+#include "motion/path.h"      /* chains */
+#include "motion/ramp.h"      /* hold */
 #include "motion/stream.h"    /* freeze, positions */
 #include "panel/inputs.h"     /* buttons */
 #include "store/parts.h"      /* selected part */
 #include "store/settings.h"   /* settings */
+#include "tick.h"             /* idle time */
 
 uint8_t machine_state;
 uint8_t machine_alarm;
@@ -20,6 +23,7 @@ uint8_t machine_homed;
 uint8_t machine_slot;
 
 static uint8_t finished;        /* the last run came to its end */
+static uint16_t moved_at;       /* when something last moved, ms */
 static uint32_t permille_steps; /* tool steps of a thousandth of the run */
 
 static void arm(void)
@@ -37,7 +41,7 @@ static void arm(void)
 
 static void raise(uint8_t alarm, uint8_t detail)
 {
-    motion_cancel();
+    path_cancel();
     guard_stop_at(0, 0);
     machine_state = STATE_ALARM;
     machine_alarm = alarm;
@@ -48,6 +52,8 @@ static void raise(uint8_t alarm, uint8_t detail)
 
 void machine_apply_settings(void)
 {
+    path_configure();
+    stream_pulse = (uint8_t)(settings[SETTING_PULSE_US] - PULSE_LEAST_US) << 2;
     stream_set_coils((uint8_t)settings[SETTING_COIL_MODE],
                      (uint8_t)settings[SETTING_INVERT_X],
                      (uint8_t)settings[SETTING_INVERT_Z]);
@@ -56,7 +62,7 @@ void machine_apply_settings(void)
 
 void machine_init(uint8_t settings_good)
 {
-    motion_cancel();
+    path_cancel();
     machine_slot = SLOT_NONE;
     machine_apply_settings();
     if (!settings_good) {
@@ -116,9 +122,10 @@ uint8_t machine_run(uint8_t slot)
     machine_slot = slot;
     machine_state = STATE_RUNNING;
     finished = 0;
+    ramp_set_override(100);
     passes_begin(slot);
     permille_steps = passes_total_steps / PERMILLE_DONE + 1;
-    motion_begin();
+    path_begin();
     return ERROR_OK;
 }
 
@@ -130,7 +137,7 @@ uint8_t machine_hold(void)
     if (machine_state != STATE_RUNNING) {
         return ERROR_NOT_RUNNING;
     }
-    stream_freeze();
+    ramp_hold();
     machine_state = STATE_HOLD;
     return ERROR_OK;
 }
@@ -144,9 +151,23 @@ uint8_t machine_resume(void)
         return ERROR_NOT_RUNNING;
     }
     machine_state = STATE_RUNNING;
-    if (stream_flags & STREAM_ACTIVE) {
+    if (ramp_held()) {
+        ramp_release();
         stream_thaw();
     }
+    ramp_release();
+    return ERROR_OK;
+}
+
+uint8_t machine_override(uint8_t percent)
+{
+    if (percent < OVERRIDE_MIN || percent > OVERRIDE_MAX) {
+        return ERROR_OUT_OF_RANGE;
+    }
+    if (machine_quiet() || machine_state == STATE_HOMING) {
+        return ERROR_NOT_RUNNING;
+    }
+    ramp_set_override(percent);
     return ERROR_OK;
 }
 
@@ -158,7 +179,7 @@ uint8_t machine_stop(void)
         break;
     case STATE_RUNNING:
     case STATE_HOLD:
-        motion_cancel();
+        path_cancel();
         machine_state = STATE_IDLE;
         break;
     default:
@@ -213,7 +234,7 @@ uint16_t machine_permille(void)
     if (machine_state != STATE_RUNNING && machine_state != STATE_HOLD) {
         return 0;
     }
-    permille = (uint16_t)(motion_made() / permille_steps);
+    permille = (uint16_t)(path_steps_made() / permille_steps);
     return permille < PERMILLE_DONE ? permille : PERMILLE_DONE - 1;
 }
 
@@ -268,26 +289,45 @@ static void serve_homing(void)
     }
 }
 
+/* Current off the coils, some time after the last move. A lathe's screw does
+   not turn by itself, so the position stays trusted. */
+static void serve_idle(void)
+{
+    int16_t idle = settings[SETTING_IDLE_MS];
+
+    if (machine_quiet() && idle >= 0 &&
+        tick_now() - moved_at >= (uint16_t)idle) {
+        stream_coils_off();
+        moved_at = tick_now() - (uint16_t)idle;
+    }
+}
+
 void machine_poll(void)
 {
+    serve_idle();
     if (guard_tripped) {
         serve_trip();
     }
     serve_buttons();
     if (machine_state == STATE_HOMING) {
         serve_homing();
-    } else if (machine_state == STATE_RUNNING && !motion_busy() &&
-               !guard_tripped) {
+    } else if ((machine_state == STATE_RUNNING ||
+                machine_state == STATE_HOLD) &&
+               !path_busy() && !guard_tripped) {
         /* The flag is read last: a trip may end the motion at any moment. */
         finished = 1;
         machine_state = STATE_IDLE;
     }
-    if (machine_state == STATE_HOMING || machine_state == STATE_RUNNING) {
-        motion_poll();
+    if (path_refused && !machine_quiet()) {
+        raise(ALARM_PATH, 0);
+    }
+    if (!machine_quiet()) {
+        moved_at = tick_now();
+        path_poll();
     }
 }
 
-uint8_t motion_source(void)
+uint8_t path_source(void)
 {
     return machine_state == STATE_HOMING ? homing_source() : passes_source();
 }

@@ -45,6 +45,9 @@ uint8_t machine_resume(void);
 uint8_t machine_stop(void);
 uint8_t machine_reset(void);
 
+/* Feed of the run under way, percent, 10..200. */
+uint8_t machine_override(uint8_t percent);
+
 /* True when flash and settings may be written: nothing moves or could. */
 uint8_t machine_quiet(void);
 

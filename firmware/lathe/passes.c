@@ -5,8 +5,8 @@
 #include "config.h"         /* PARK_STEPS */
 #include "lathe/part.h"     /* the part */
 #include "link/protocol.h"  /* axes, settings */
-#include "motion/motion.h"  /* move_ */
-#include "motion/stream.h"  /* stream_mark */
+#include "motion/path.h"    /* segments */
+#include "motion/stream.h"  /* where the tool is */
 #include "store/settings.h" /* part zero, rapid rates */
 
 enum stage {
@@ -45,18 +45,14 @@ static int16_t cut_from;
 static int16_t cut_to;
 
 /*
- * The stream runs some 100 ms behind this generator. What it executes is
- * told by its mark: the number of a pass, counted over all operations. Two
- * records are enough, because a pass lasts longer than the stream.
+ * Up to 18 segments, five passes, are described ahead of the tool. What it
+ * does now is told by the mark of the segment: an index into this ring.
  */
-struct shown {
-    uint8_t mark;
-    uint8_t operation;
-    uint8_t pass;
-    uint8_t passes;
-};
-static struct shown newest;
-static struct shown previous;
+#define SHOWN 8
+static uint8_t shown_operation[SHOWN];
+static uint8_t shown_pass[SHOWN];
+static uint8_t shown_passes[SHOWN];
+static uint8_t newest;
 
 static uint8_t at_most_255(uint16_t value)
 {
@@ -65,29 +61,25 @@ static uint8_t at_most_255(uint16_t value)
 
 static void show_pass(void)
 {
-    previous.mark = newest.mark;
-    previous.operation = newest.operation;
-    previous.pass = newest.pass;
-    previous.passes = newest.passes;
-    newest.mark++;
-    newest.operation = operation;
-    newest.pass = at_most_255(pass);
-    newest.passes = at_most_255(passes);
+    newest = (newest + 1) & (SHOWN - 1);
+    shown_operation[newest] = operation;
+    shown_pass[newest] = at_most_255(pass);
+    shown_passes[newest] = at_most_255(passes);
 }
 
 uint8_t passes_operation(void)
 {
-    return stream_mark == newest.mark ? newest.operation : previous.operation;
+    return shown_operation[path_mark];
 }
 
 uint8_t passes_pass(void)
 {
-    return stream_mark == newest.mark ? newest.pass : previous.pass;
+    return shown_pass[path_mark];
 }
 
 uint8_t passes_passes(void)
 {
-    return stream_mark == newest.mark ? newest.passes : previous.passes;
+    return shown_passes[path_mark];
 }
 
 /* Lowest z in front of which nothing larger than x is left. */
@@ -223,12 +215,26 @@ static int16_t level(void)
     return level_from - step_depth * pass - (pass < deeper ? pass : deeper);
 }
 
+/* Where the segment described last ends, machine steps. */
+static int16_t at_x;
+static int16_t at_z;
+
 static void move(uint8_t axis, int16_t to, uint32_t rate)
 {
-    move_axis = axis;
-    move_to = to + settings[axis == AXIS_X ? SETTING_ZERO_X : SETTING_ZERO_Z];
-    move_rate = rate;
-    move_mark = newest.mark;
+    path_next.kind = SEGMENT_LINE;
+    path_next.dx = 0;
+    path_next.dz = 0;
+    path_next.mark = newest;
+    path_rate = rate;
+    if (axis == AXIS_X) {
+        to += settings[SETTING_ZERO_X];
+        path_next.dx = to - at_x;
+        at_x = to;
+    } else {
+        to += settings[SETTING_ZERO_Z];
+        path_next.dz = to - at_z;
+        at_z = to;
+    }
 }
 
 static void rapid(uint8_t axis, int16_t to)
@@ -236,12 +242,13 @@ static void rapid(uint8_t axis, int16_t to)
     uint8_t id = axis == AXIS_X ? SETTING_RAPID_RATE_X : SETTING_RAPID_RATE_Z;
 
     move(axis, to, (uint32_t)settings[id] << 8);
+    path_next.kind |= SEGMENT_RAPID;
 }
 
 static void park(uint8_t axis)
 {
-    rapid(axis, 0);
-    move_to = -PARK_STEPS;
+    rapid(axis, -PARK_STEPS -
+                    settings[axis == AXIS_X ? SETTING_ZERO_X : SETTING_ZERO_Z]);
 }
 
 static uint32_t cut_feed(void)
@@ -268,6 +275,8 @@ static uint8_t next_operation(void)
 void passes_begin(uint8_t slot)
 {
     slot_cut = slot;
+    at_x = stream_position_x();
+    at_z = stream_position_z();
     part_open(slot);
     passes_operations = part_operations;
 
@@ -293,9 +302,17 @@ void passes_begin(uint8_t slot)
     show_pass();
 }
 
+static void approach(void)
+{
+    rapid(AXIS_Z, cut_axis == AXIS_Z ? cut_from : level_from + part_retract);
+    stage = STAGE_INFEED;
+}
+
 /* Describes the move of the present stage and sets the stage after it. */
 uint8_t passes_source(void)
 {
+    int16_t inwards;
+
     part_reopen(slot_cut);
     if (stage == STAGE_NEXT_OPERATION) {
         stage = next_operation() ? STAGE_CLEAR : STAGE_PARK_X;
@@ -304,11 +321,16 @@ uint8_t passes_source(void)
     case STAGE_CLEAR:
         rapid(AXIS_X, part_stock_radius + part_retract);
         stage = STAGE_APPROACH;
+        if (path_next.dx > 0) {
+            break;
+        }
+        /* Outside the stock already: both axes at once. */
+        inwards = path_next.dx;
+        approach();
+        path_next.dx = inwards;
         break;
     case STAGE_APPROACH:
-        rapid(AXIS_Z,
-              cut_axis == AXIS_Z ? cut_from : level_from + part_retract);
-        stage = STAGE_INFEED;
+        approach();
         break;
     case STAGE_INFEED:
         show_pass();

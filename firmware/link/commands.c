@@ -7,7 +7,8 @@
 #include "lathe/passes.h"     /* progress */
 #include "link/frame.h"       /* request, response */
 #include "link/protocol.h"    /* numbers */
-#include "motion/motion.h"    /* dead steps */
+#include "motion/path.h"      /* dead steps */
+#include "motion/ramp.h"      /* hold, override */
 #include "motion/stream.h"    /* positions */
 #include "panel/inputs.h"     /* switches, buttons */
 #include "store/eeprom.h"     /* serial number */
@@ -30,6 +31,7 @@ static __code const uint8_t lengths[] = {
     COMMAND_STOP, STOP_REQUEST_SIZE, STOP_REQUEST_SIZE,
     COMMAND_RESET, RESET_REQUEST_SIZE, RESET_REQUEST_SIZE,
     COMMAND_ZERO, ZERO_REQUEST_SIZE, ZERO_REQUEST_SIZE,
+    COMMAND_OVERRIDE, OVERRIDE_REQUEST_SIZE, OVERRIDE_REQUEST_SIZE,
     COMMAND_UPLOAD_BEGIN, UPLOAD_BEGIN_REQUEST_SIZE, UPLOAD_BEGIN_REQUEST_SIZE,
     COMMAND_UPLOAD_DATA, UPLOAD_DATA_REQUEST_MIN, UPLOAD_DATA_REQUEST_MAX,
     COMMAND_UPLOAD_COMMIT, UPLOAD_COMMIT_REQUEST_SIZE,
@@ -130,7 +132,7 @@ static uint8_t status_flags(void)
     if (inputs & INPUT_STOP) {
         flags |= STATUS_FLAG_BUTTON_STOP;
     }
-    if (stream_flags & STREAM_ACTIVE) {
+    if ((stream_flags & STREAM_ACTIVE) && !ramp_held()) {
         flags |= STATUS_FLAG_MOTION;
     }
     return flags;
@@ -346,6 +348,9 @@ uint8_t commands_execute(void)
     case COMMAND_ZERO:
         error =
             machine_zero(frame_payload[ZERO_AXIS_AT], get_i16(ZERO_VALUE_AT));
+        break;
+    case COMMAND_OVERRIDE:
+        error = machine_override(frame_payload[OVERRIDE_PERCENT_AT]);
         break;
     case COMMAND_UPLOAD_BEGIN:
     case COMMAND_UPLOAD_DATA:

@@ -45,6 +45,10 @@
 #define FEED_MIN                            1024
 /* feed units of one step/s */
 #define FEED_UNIT                           256
+/* percent, slowest feed override */
+#define OVERRIDE_MIN                        10
+/* percent, fastest feed override */
+#define OVERRIDE_MAX                        200
 /* progress of a finished run */
 #define PERMILLE_DONE                       1000
 
@@ -81,6 +85,7 @@
 #define ALARM_STOPPED_HOMING                8
 #define ALARM_DEAD_STEPS_SPREAD             9
 #define ALARM_INTERNAL                      10
+#define ALARM_PATH                          11
 
 /* Why the chip last started. */
 #define RESET_CAUSE_POWER_ON                1
@@ -185,6 +190,12 @@
 #define ZERO_RESPONSE_SIZE                  1
 #define ZERO_AXIS_AT                        0
 #define ZERO_VALUE_AT                       1
+/* Feed of the run, in percent of the programmed one; rapids keep theirs.
+ * Every run starts with 100. */
+#define COMMAND_OVERRIDE                    0x0A
+#define OVERRIDE_REQUEST_SIZE               1
+#define OVERRIDE_RESPONSE_SIZE              1
+#define OVERRIDE_PERCENT_AT                 0
 /* Start to receive a part image; an upload under way is forgotten.
  * OUT_OF_RANGE: length is not 56 to 960. */
 #define COMMAND_UPLOAD_BEGIN                0x10
@@ -362,7 +373,12 @@
 #define SETTING_DEAD_Z                      18
 #define SETTING_HOMING_REPEATS              19
 #define SETTING_SPREAD_MAX                  20
-#define SETTING_COUNT                       21
+#define SETTING_ACCELERATION                21
+#define SETTING_START_RATE_X                22
+#define SETTING_START_RATE_Z                23
+#define SETTING_IDLE_MS                     24
+#define SETTING_PULSE_US                    25
+#define SETTING_COUNT                       26
 
 /* SETTINGS(X): X(id, name, default, min, max) for each, in order of id. */
 #define SETTINGS(X)                                                          \
@@ -374,11 +390,11 @@
     X(5, ZERO_Z, (-8000), (-32000), 0)                                       \
     X(6, HOME_RATE, 800, 20, 4000)                                           \
     X(7, LATCH_RATE, 100, 20, 100)                                           \
-    X(8, RAPID_RATE_X, 1000, 20, 4000)                                       \
-    X(9, RAPID_RATE_Z, 1000, 20, 4000)                                       \
+    X(8, RAPID_RATE_X, 1000, 20, 32000)                                      \
+    X(9, RAPID_RATE_Z, 1000, 20, 32000)                                      \
     X(10, SWITCH_TRAVEL_X, 0, 0, 200)                                        \
     X(11, SWITCH_TRAVEL_Z, 0, 0, 200)                                        \
-    X(12, COIL_MODE, 0, 0, 1)                                                \
+    X(12, COIL_MODE, 0, 0, 3)                                                \
     X(13, ESTOP_FITTED, 1, 0, 1)                                             \
     X(14, INVERT_X, 0, 0, 1)                                                 \
     X(15, INVERT_Z, 0, 0, 1)                                                 \
@@ -386,6 +402,11 @@
     X(17, DEAD_X, 0, 0, 1000)                                                \
     X(18, DEAD_Z, 0, 0, 1000)                                                \
     X(19, HOMING_REPEATS, 3, 1, 9)                                           \
-    X(20, SPREAD_MAX, 2, 0, 50)
+    X(20, SPREAD_MAX, 2, 0, 50)                                              \
+    X(21, ACCELERATION, 8000, 1100, 32000)                                   \
+    X(22, START_RATE_X, 400, 20, 4000)                                       \
+    X(23, START_RATE_Z, 400, 20, 4000)                                       \
+    X(24, IDLE_MS, (-1), (-1), 32000)                                        \
+    X(25, PULSE_US, 5, 5, 60)
 
 #endif

@@ -13,9 +13,12 @@
 ;
 ; Entry of the step ring, two bytes (see stream.h for the meaning):
 ;       flags    bit 0 X step, 1 X is negative, 2 Z step, 3 Z is negative,
-;                4 X takes up slack, 5 Z takes up slack, 6 new speed, 7 end
-;       stretch  path length of the step less one, in 1/256
-; interval = period + (stretch * period) / 256, in cycles, 24 bits.
+;                4 X takes up slack, 5 Z takes up slack, 6 advances the path,
+;                7 no step but an order: bits 0..1 say which
+;       stretch  path length of the step less one, in 1/256; of an order its
+;                number
+; interval = period + (stretch * period) / 256, in cycles, 24 bits; of a wait
+; the number of milliseconds that its entry tells.
 ;
 ; Intervals over 65,535 cycles are cut: while 0x10000 or more remain, half a
 ; turn of Timer 1 (0x8000) is waited for first, so that the last piece is
@@ -27,7 +30,9 @@
         radix   dec
 
         global  _stream_head, _stream_tail, _stream_flags
-        global  _speed_head, _speed_tail, _speed_ring, _stream_mark
+        global  _stream_count, _stream_signal, _stream_period
+        global  _stream_step_dir, _stream_pulse, _stream_invert_x
+        global  _stream_invert_z
         global  _position_x, _position_z, _slack_x, _slack_z
         global  _phase_x, _phase_z, _phase_step, _coils_x, _coils_z
         global  _pattern_x, _pattern_z, _stream_next, _step_ring
@@ -38,22 +43,34 @@ STEP_Z          equ     2
 Z_NEGATIVE      equ     3
 SLACK_X         equ     4
 SLACK_Z         equ     5
-NEW_SPEED       equ     6
-END_ENTRY       equ     7
+ADVANCES        equ     6
+ORDER           equ     7
+; Orders, bits 0..1
+ORDER_END       equ     0
+CYCLES_PER_MS   equ     12000
+NO_INTERVAL     equ     240             ; 20 us: longer than this interrupt
+ORDER_WAIT      equ     1
+ORDER_OUTPUT    equ     2
+ORDER_SIGNAL    equ     3
 
 ; _stream_flags
 ACTIVE          equ     0               ; an interrupt is due
 WAITING         equ     1               ; half turns of the timer remain
 DRY             equ     2               ; ring was empty in mid-move
+NEW_PERIOD      equ     3               ; _stream_period is to be taken over
 
 access_data     udata_acs
 _stream_head    res 1                   ; written by the main loop only
 _stream_tail    res 1                   ; written here only
 _stream_flags   res 1
 _stream_next    res 1                   ; flags of the step to come
-_stream_mark    res 1                   ; mark of the speed in force
-_speed_head     res 1                   ; offset into _speed_ring, 0..31
-_speed_tail     res 1
+_stream_count   res 2                   ; entries that advanced the path
+_stream_signal  res 1                   ; number of the last signal passed
+_stream_period  res 3                   ; the next period, with NEW_PERIOD
+_stream_step_dir res 1                  ; bit 0: pulses instead of coils
+_stream_pulse   res 1                   ; longer pulse, in 1/4 us
+_stream_invert_x res 1                  ; 2 = direction output inverted
+_stream_invert_z res 1
 _pattern_x      res 1                   ; coils to write at the next step
 _pattern_z      res 1
 _phase_x        res 1                   ; index into the coil table, 0..7
@@ -73,7 +90,6 @@ save_fsr0       res 2
 step_tables     udata
 _coils_x        res 8                   ; patterns in forward order, or
 _coils_z        res 8                   ; backward for an inverted axis
-_speed_ring     res 32                  ; 8 x (period, 24 bits; mark)
 
 step_ring       udata
 _step_ring      res 256
@@ -142,11 +158,16 @@ step_interrupt:
         bra     schedule
         movff   _pattern_z, LATB
         movff   _pattern_x, LATD
+        btfsc   _stream_next, ORDER, A
+        bra     order
         account STEP_X, X_NEGATIVE, SLACK_X, _position_x, _slack_x
         account STEP_Z, Z_NEGATIVE, SLACK_Z, _position_z, _slack_z
 
-        btfsc   _stream_next, END_ENTRY, A
-        bra     stop
+        btfss   _stream_next, ADVANCES, A
+        bra     next
+        infsnz  _stream_count, F, A
+        incf    _stream_count + 1, F, A
+next:
         movf    _stream_tail, W, A
         cpfseq  _stream_head, A
         bra     take
@@ -168,31 +189,30 @@ take:
         movlw   2
         addwf   _stream_tail, F, A
         clrf    FSR0H, A
-        btfss   _stream_next, NEW_SPEED, A
-        bra     patterns
-        movf    _speed_tail, W, A
-        addlw   LOW(_speed_ring)
-        movwf   FSR0L, A
-        movff   POSTINC0, period
-        movff   POSTINC0, period + 1
-        movff   POSTINC0, period + 2
-        movff   INDF0, _stream_mark
-        movlw   4
-        addwf   _speed_tail, W, A
-        andlw   0x1F
-        movwf   _speed_tail, A
-
+        btfsc   _stream_next, ORDER, A
+        bra     order_interval
 patterns:
+        btfsc   _stream_step_dir, 0, A
+        bra     pulses
         advance STEP_X, X_NEGATIVE, _phase_x, _coils_x, _pattern_x
         advance STEP_Z, Z_NEGATIVE, _phase_z, _coils_z, _pattern_z
+patterns_known:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
-
+        btfss   _stream_flags, NEW_PERIOD, A
+        bra     interval
+        movff   _stream_period, period
+        movff   _stream_period + 1, period + 1
+        movff   _stream_period + 2, period + 2
+        bcf     _stream_flags, NEW_PERIOD, A
+interval:
         movff   period, remain
         movff   period + 1, remain + 1
         movff   period + 2, remain + 2
         movf    stretch, W, A
-        bz      schedule
+        bnz     stretched
+        bra     schedule
+stretched:
         ; PROD belongs to the program interrupted here
         movff   PRODL, save_fsr0
         movff   PRODH, save_fsr0 + 1
@@ -240,4 +260,86 @@ half_turn:
         movlw   0
         subwfb  remain + 2, F, A
         retfie  FAST
+
+; Step and direction outputs: bit 0 step, 1 direction, 2 enable. The step
+; just made is ended here, at least 5 us after its edge; the direction of the
+; next one stands from here on, a whole interval ahead of it.
+pulse   macro   step, negative, invert, pattern
+        movlw   4
+        btfsc   _stream_next, negative, A
+        movlw   6
+        xorwf   invert, W, A
+        btfsc   _stream_next, step, A
+        iorlw   1
+        movwf   pattern, A
+        endm
+
+pulses:
+        pulse   STEP_X, X_NEGATIVE, _stream_invert_x, _pattern_x
+        pulse   STEP_Z, Z_NEGATIVE, _stream_invert_z, _pattern_z
+        movf    _stream_pulse, W, A
+pulse_wait:
+        addlw   -1
+        bc      pulse_wait
+        movf    _pattern_x, W, A
+        andlw   6
+        movwf   LATD, A
+        movf    _pattern_z, W, A
+        andlw   6
+        movwf   LATB, A
+        bra     patterns_known
+
+; Interval before an order: none for most (as short as can be), for a wait
+; its milliseconds: stretch * 12,000.
+order_interval:
+        movff   save_fsr0 + 1, FSR0H
+        movff   save_fsr0, FSR0L
+        clrf    remain + 2, A
+        clrf    remain + 1, A
+        movlw   NO_INTERVAL
+        movwf   remain, A
+        movf    _stream_next, W, A
+        andlw   3
+        xorlw   ORDER_WAIT
+        bz      wait_interval
+        bra     schedule
+wait_interval:
+        movff   PRODL, save_fsr0
+        movff   PRODH, save_fsr0 + 1
+        movf    stretch, W, A
+        mullw   LOW(CYCLES_PER_MS)
+        movff   PRODL, remain
+        movff   PRODH, remain + 1
+        movf    stretch, W, A
+        mullw   HIGH(CYCLES_PER_MS)
+        movf    PRODL, W, A
+        addwf   remain + 1, F, A
+        movlw   0
+        addwfc  PRODH, W, A
+        movwf   remain + 2, A
+        movff   save_fsr0 + 1, PRODH
+        movff   save_fsr0, PRODL
+        bra     schedule
+
+; The time of an order has come.
+order:
+        movf    _stream_next, W, A
+        andlw   3
+        bnz     not_end
+        bra     stop
+not_end:
+        xorlw   ORDER_SIGNAL
+        bnz     not_signal
+        movff   stretch, _stream_signal
+        bra     next
+not_signal:
+        xorlw   ORDER_SIGNAL ^ ORDER_OUTPUT
+        bz      output
+        bra     next                    ; a wait: its time was its purpose
+output:
+        movf    stretch, W, A           ; RC6 spindle, RC7 coolant, both at
+        xorwf   LATC, W, A              ; once and none twice
+        andlw   0xC0
+        xorwf   LATC, F, A
+        bra     next
         end

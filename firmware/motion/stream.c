@@ -12,10 +12,14 @@
 #define START_DELAY_H 0x2E         /* 0x2EE0 cycles = 1 ms */
 #define START_DELAY_L 0xE0
 
+#define COILS_HALF 2
+#define COILS_STEP_DIR 3
+#define ENABLE_OUTPUT 0x04
+
+extern volatile uint8_t stream_step_dir;
+extern volatile uint8_t stream_invert_x;
+extern volatile uint8_t stream_invert_z;
 extern volatile uint8_t stream_next;
-extern volatile uint8_t speed_head;
-extern volatile uint8_t speed_tail;
-extern volatile uint8_t speed_ring[32];
 extern volatile uint8_t step_ring[256];
 extern volatile uint8_t coils_x[8];
 extern volatile uint8_t coils_z[8];
@@ -51,10 +55,19 @@ void stream_set_coils(uint8_t mode, uint8_t invert_x, uint8_t invert_z)
 
         coils_x[i] = forward[invert_x ? backward : i];
         coils_z[i] = forward[invert_z ? backward : i];
+        if (mode == COILS_STEP_DIR) {
+            coils_x[i] = ENABLE_OUTPUT;
+            coils_z[i] = ENABLE_OUTPUT;
+        }
     }
-    phase_step = mode == 2 ? 1 : 2;
-    phase_x = mode == 1 ? 1 : 0;
-    phase_z = phase_x;
+    stream_step_dir = mode == COILS_STEP_DIR;
+    stream_invert_x = invert_x << 1;
+    stream_invert_z = invert_z << 1;
+    phase_step = mode == COILS_HALF ? 1 : 2;
+    if (mode < COILS_HALF) {
+        phase_x = (phase_x & 6) | mode;
+        phase_z = (phase_z & 6) | mode;
+    }
 }
 
 void stream_coils_on(void)
@@ -94,20 +107,13 @@ void stream_push(uint8_t flags, uint8_t stretch)
     stream_head = head;
 }
 
-uint8_t stream_speeds_free(void)
+void stream_prepare(void)
 {
-    return STREAM_SPEEDS - ((uint8_t)((speed_head - speed_tail) & 0x1F) >> 2);
-}
-
-void stream_push_speed(uint32_t period, uint8_t mark)
-{
-    uint8_t head = speed_head;
-
-    speed_ring[head] = (uint8_t)period;
-    speed_ring[head + 1] = (uint8_t)(period >> 8);
-    speed_ring[head + 2] = (uint8_t)(period >> 16);
-    speed_ring[head + 3] = mark;
-    speed_head = (head + 4) & 0x1F;
+    stream_abort();
+    stream_head = 0;
+    stream_tail = 0;
+    stream_count = 0;
+    stream_coils_on();
 }
 
 void stream_thaw(void)
@@ -129,13 +135,8 @@ void stream_thaw(void)
 void stream_start(void)
 {
     stream_low = STREAM_ENTRIES;
-    stream_flags = 0;
+    stream_flags &= STREAM_NEW_PERIOD;
     stream_thaw();
-}
-
-void stream_freeze(void)
-{
-    PIE2 &= (uint8_t)~CCP2IE_MASK;
 }
 
 /* The interrupt has turned the phases of the step to come already; a step
@@ -163,7 +164,6 @@ void stream_abort(void)
     stream_flags = 0;
     stream_next = 0;
     stream_tail = stream_head;
-    speed_tail = speed_head;
 }
 
 /* The interrupt may change a position between two of its bytes, but not

@@ -27,21 +27,21 @@
 #define STREAM_Z_NEGATIVE 0x08
 #define STREAM_SLACK_X 0x10 /* turns the screw, the tool stands still */
 #define STREAM_SLACK_Z 0x20
-#define STREAM_NEW_SPEED 0x40 /* the next queued speed holds from here on */
-#define STREAM_END 0x80       /* no step; the chain of moves is complete */
+#define STREAM_ADVANCES 0x40 /* counts in stream_count */
+
+/* Orders: entries without a step. Their stretch is a number. */
+#define STREAM_END 0x80    /* the chain is complete */
+#define STREAM_WAIT 0x81   /* milliseconds before the entry after */
+#define STREAM_OUTPUT 0x82 /* relays: bit 6 spindle, bit 7 coolant */
+#define STREAM_SIGNAL 0x83 /* goes to stream_signal */
 
 /* Bits of stream_flags. */
 #define STREAM_ACTIVE 0x01
 #define STREAM_WAITING 0x02
 #define STREAM_DRY 0x04
+#define STREAM_NEW_PERIOD 0x08 /* stream_period is to be taken over */
 
 #define STREAM_ENTRIES 127u /* one of 128 stays free */
-#define STREAM_SPEEDS 7u    /* one of 8 stays free */
-
-/* Shortest period a chain may ask for: 60,000 steps/s. Below it the next
-   compare time could pass before the interrupt has set it. */
-#define STREAM_PERIOD_MIN 200ul
-#define STREAM_PERIOD_MAX 0xB00000ul /* with stretch it fits 24 bits: 1 s */
 
 /* Shared with the step interrupt. The positions are the tool's, in machine
    steps; the slack is screw minus tool, 0 after a positive move and minus
@@ -49,7 +49,10 @@
 extern volatile uint8_t stream_head;
 extern volatile uint8_t stream_tail;
 extern volatile uint8_t stream_flags;
-extern volatile uint8_t stream_mark;
+extern volatile uint8_t stream_signal;
+extern volatile uint8_t stream_pulse;  /* step pulse beyond 5 us, 1/4 us */
+extern volatile uint16_t stream_count; /* entries that advanced the path */
+extern volatile uint8_t stream_period[3];
 extern volatile int16_t position_x;
 extern volatile int16_t position_z;
 extern volatile int16_t slack_x;
@@ -61,7 +64,8 @@ extern uint8_t stream_low;
 /* Sets up Timer 1 and CCP2; call once after reset. */
 void stream_init(void);
 
-/* Chooses the coil tables: mode 0 two phases on, 1 wave, 2 half step; an
+/* Chooses the outputs: mode 0 two phases on, 1 wave, 2 half step, 3 step,
+   direction and enable on the first three pins of each axis; an
    inverted axis turns the other way. Only while not active; the rotors may
    jump by up to two steps when the windings are next switched on. */
 void stream_set_coils(uint8_t mode, uint8_t invert_x, uint8_t invert_z);
@@ -82,21 +86,14 @@ uint8_t stream_fill(void);
    path length of this step less one, in 1/256 (0 for a straight step). */
 void stream_push(uint8_t flags, uint8_t stretch);
 
-/* Speeds that can be queued now, 0..STREAM_SPEEDS. */
-uint8_t stream_speeds_free(void);
+/* Empties the queue, sets stream_count to 0, energises the coils. */
+void stream_prepare(void);
 
-/* Queues the speed that the next entry with STREAM_NEW_SPEED switches to.
-   period: cycles per step, STREAM_PERIOD_MIN..MAX; mark: any number, shows
-   in stream_mark from that entry on. */
-void stream_push_speed(uint32_t period, uint8_t mark);
-
-/* Starts executing. The first entry follows 1 ms later. */
+/* Starts executing, once stream_period has been set. The first entry follows
+   1 ms later. */
 void stream_start(void);
 
-/* Stops between two steps; nothing is lost (any). */
-void stream_freeze(void);
-
-/* Goes on after stream_freeze(), 1 ms later. */
+/* Goes on after the ramp has stopped it between two steps, 1 ms later. */
 void stream_thaw(void);
 
 /* Stops at once and forgets everything queued (any). */

@@ -13,6 +13,8 @@ from tornillo.machine import Machine
 from tornillo.protocol import (
     FRAME_RESPONSE_BIT,
     IMAGE_HEADER,
+    OVERRIDE_MAX,
+    OVERRIDE_MIN,
     PART_SLOTS,
     PROTOCOL_VERSION,
     REQUESTS,
@@ -75,6 +77,7 @@ class ScriptedChip:
         self.refusals: dict[Command, bytes] = {}
         self.wrong_crc = False
         self.executed: list[Command] = []
+        self.feed_percent = 100
         self.zeroed: list[tuple[int, int]] = []
         self.upload: bytearray | None = None
         self.wanted = (0, 0)
@@ -125,6 +128,7 @@ class ScriptedChip:
         if slot not in self.slots:
             raise refuse(ErrorCode.NO_PART)
         self.status = self.status._replace(state=State.RUNNING, slot=slot)
+        self.feed_percent = 100
         return b""
 
     def do_hold(self, _payload: bytes) -> bytes:
@@ -139,6 +143,15 @@ class ScriptedChip:
         if self.status.state != State.HOLD:
             raise refuse(ErrorCode.NOT_RUNNING)
         self.status = self.status._replace(state=State.RUNNING)
+        return b""
+
+    def do_override(self, payload: bytes) -> bytes:
+        """OVERRIDE."""
+        if not OVERRIDE_MIN <= payload[0] <= OVERRIDE_MAX:
+            raise refuse(ErrorCode.OUT_OF_RANGE)
+        if self.status.state not in (State.RUNNING, State.HOLD):
+            raise refuse(ErrorCode.NOT_RUNNING)
+        self.feed_percent = payload[0]
         return b""
 
     def do_stop(self, _payload: bytes) -> bytes:

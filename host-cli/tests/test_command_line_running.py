@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verbs about motion: home, run, hold, resume, stop, reset, status."""
+"""The verbs about motion: home, run, hold, resume, override, stop, reset, status."""
 
 import json
 import sys
@@ -217,6 +217,45 @@ def test_hold_and_resume_without_a_run_are_refused(tornillo: Tornillo, verb: str
     assert "no part is being cut" in result.stderr
 
 
+@pytest.mark.parametrize("percent", [10, 100, 200])
+def test_override_changes_the_feed_of_the_run(
+    tornillo: Tornillo, loaded: ScriptedChip, percent: int
+) -> None:
+    tornillo("run")
+    result = tornillo("override", str(percent))
+    assert result.exit_code == 0
+    assert result.stdout == f"feed now {percent} %; back with `tornillo override 100`\n"
+    assert loaded.feed_percent == percent
+    tornillo("hold")
+    assert tornillo("override", "55").exit_code == 0
+    assert (loaded.feed_percent, loaded.status.state) == (55, State.HOLD)
+
+
+@pytest.mark.parametrize("percent", [-20, 0, 9, 201, 256, 100000])
+def test_override_outside_its_range_is_refused_before_it_is_sent(
+    tornillo: Tornillo, loaded: ScriptedChip, percent: int
+) -> None:
+    tornillo("run")
+    result = tornillo("override", str(percent))
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert f"Error: a feed of {percent} % is not possible" in result.stderr
+    assert "Try: choose 10 to 200 percent" in result.stderr
+    assert Command.OVERRIDE not in loaded.executed
+
+
+def test_override_without_a_run_is_refused(tornillo: Tornillo, loaded: ScriptedChip) -> None:
+    result = tornillo("override", "80")
+    assert (result.exit_code, result.stdout) == (1, "")
+    assert "no part is being cut" in result.stderr
+    assert "Try: start one with `tornillo run PART`" in result.stderr
+    assert loaded.feed_percent == 100
+
+
+@pytest.mark.parametrize("arguments", [(), ("fast",), ("80", "90"), ("80.5",)])
+def test_override_takes_one_whole_number(tornillo: Tornillo, arguments: tuple[str, ...]) -> None:
+    assert tornillo("override", *arguments).exit_code == 2
+
+
 def test_reset_acknowledges_and_says_what_is_next(tornillo: Tornillo, chip: ScriptedChip) -> None:
     chip.status = IDLE._replace(state=State.ALARM, alarm=Alarm.ESTOP, flags=0)
     assert tornillo("reset").stdout == "no alarm; home next: `tornillo home`\n"
@@ -287,6 +326,7 @@ def test_status_for_scripts_has_every_field(tornillo: Tornillo, loaded: Scripted
         (("run",), Command.RUN),
         (("hold",), Command.HOLD),
         (("resume",), Command.RESUME),
+        (("override", "80"), Command.OVERRIDE),
         (("stop",), Command.STOP),
         (("reset",), Command.RESET),
         (("status",), Command.STATUS),

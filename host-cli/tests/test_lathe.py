@@ -183,9 +183,31 @@ def test_the_verbs_of_motion_change_the_state(lathe: Lathe, image: bytes) -> Non
     lathe.hold()
     assert lathe.status().state is State.HOLD
     lathe.resume()
+    lathe.override(130)
     lathe.stop()
     assert lathe.status().state is State.IDLE
     lathe.reset()
+
+
+def test_an_override_lasts_until_the_next_run(
+    lathe: Lathe, chip: ScriptedChip, image: bytes
+) -> None:
+    slot = lathe.upload(image)
+    lathe.run(slot)
+    lathe.override(130)
+    assert chip.feed_percent == 130
+    lathe.stop()
+    lathe.run(slot)
+    assert chip.feed_percent == 100
+
+
+@pytest.mark.parametrize("percent", [9, 201])
+def test_an_override_outside_its_range_is_not_sent(
+    lathe: Lathe, chip: ScriptedChip, percent: int
+) -> None:
+    with pytest.raises(TornilloError, match=f"a feed of {percent} % is not possible"):
+        lathe.override(percent)
+    assert Command.OVERRIDE not in chip.executed
 
 
 def test_an_empty_answer_to_hello_is_refused(port: ScriptedPort, chip: ScriptedChip) -> None:

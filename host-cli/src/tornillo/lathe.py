@@ -24,6 +24,8 @@ from tornillo.machine import Machine
 from tornillo.ports import find_port, open_port
 from tornillo.protocol import (
     FRAME_TIMEOUT_MS,
+    OVERRIDE_MAX,
+    OVERRIDE_MIN,
     PROTOCOL_VERSION,
     REQUESTS,
     RESPONSES,
@@ -134,6 +136,19 @@ class Lathe:
     def reset(self) -> None:
         """Acknowledge an alarm."""
         self._request(Command.RESET)
+
+    def override(self, percent: int) -> None:
+        """Cut at `percent` of the programmed feed, 10..200, from now to the end of this run.
+
+        Rapids keep their speed. Raises TornilloError when `percent` lies outside the range,
+        ChipError (NOT_RUNNING) when no part is being cut.
+        """
+        if not OVERRIDE_MIN <= percent <= OVERRIDE_MAX:
+            raise TornilloError(
+                f"a feed of {percent} % is not possible",
+                f"choose {OVERRIDE_MIN} to {OVERRIDE_MAX} percent of the programmed feed",
+            )
+        self._request(Command.OVERRIDE, percent)
 
     def zero(self, axis: Axis, steps: int) -> None:
         """Say that the tool now stands at part coordinate `steps` (X: radius) of `axis`."""

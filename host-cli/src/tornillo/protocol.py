@@ -39,6 +39,10 @@ POSITION_MAX = 32000
 FEED_MIN = 1024
 #: feed units of one step/s
 FEED_UNIT = 256
+#: percent, slowest feed override
+OVERRIDE_MIN = 10
+#: percent, fastest feed override
+OVERRIDE_MAX = 200
 #: progress of a finished run
 PERMILLE_DONE = 1000
 
@@ -55,6 +59,7 @@ class Command(IntEnum):
     STOP = 0x07
     RESET = 0x08
     ZERO = 0x09
+    OVERRIDE = 0x0A
     UPLOAD_BEGIN = 0x10
     UPLOAD_DATA = 0x11
     UPLOAD_COMMIT = 0x12
@@ -110,6 +115,7 @@ class Alarm(IntEnum):
     STOPPED_HOMING = 8
     DEAD_STEPS_SPREAD = 9
     INTERNAL = 10
+    PATH = 11
 
 
 class ResetCause(IntEnum):
@@ -196,6 +202,11 @@ class SettingId(IntEnum):
     DEAD_Z = 18
     HOMING_REPEATS = 19
     SPREAD_MAX = 20
+    ACCELERATION = 21
+    START_RATE_X = 22
+    START_RATE_Z = 23
+    IDLE_MS = 24
+    PULSE_US = 25
 
 
 #: Request payloads; UPLOAD_DATA is followed by its bytes.
@@ -209,6 +220,7 @@ REQUESTS = {
     Command.STOP: Struct("<"),
     Command.RESET: Struct("<"),
     Command.ZERO: Struct("<Bi"),
+    Command.OVERRIDE: Struct("<B"),
     Command.UPLOAD_BEGIN: Struct("<HH"),
     Command.UPLOAD_DATA: Struct("<H"),
     Command.UPLOAD_COMMIT: Struct("<"),
@@ -230,6 +242,7 @@ RESPONSES = {
     Command.STOP: Struct("<"),
     Command.RESET: Struct("<"),
     Command.ZERO: Struct("<"),
+    Command.OVERRIDE: Struct("<"),
     Command.UPLOAD_BEGIN: Struct("<"),
     Command.UPLOAD_DATA: Struct("<"),
     Command.UPLOAD_COMMIT: Struct("<BH"),
@@ -375,11 +388,11 @@ SETTINGS = (
     Setting(SettingId.ZERO_Z, -8000, -32000, 0, "steps", "machine Z of the part's front face"),
     Setting(SettingId.HOME_RATE, 800, 20, 4000, "step/s", "speed towards the limit switches"),
     Setting(SettingId.LATCH_RATE, 100, 20, 100, "step/s", "speed of the second, slow approach"),
-    Setting(SettingId.RAPID_RATE_X, 1000, 20, 4000, "step/s", "rapid speed of X"),
-    Setting(SettingId.RAPID_RATE_Z, 1000, 20, 4000, "step/s", "rapid speed of Z"),
+    Setting(SettingId.RAPID_RATE_X, 1000, 20, 32000, "step/s", "rapid speed of X"),
+    Setting(SettingId.RAPID_RATE_Z, 1000, 20, 32000, "step/s", "rapid speed of Z"),
     Setting(SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide way, switch X closed to open"),
     Setting(SettingId.SWITCH_TRAVEL_Z, 0, 0, 200, "steps", "slide way, switch Z closed to open"),
-    Setting(SettingId.COIL_MODE, 0, 0, 1, "", "0 two phases on, 1 one phase on (wave)"),
+    Setting(SettingId.COIL_MODE, 0, 0, 3, "", "0 two phases on, 1 wave, 2 half, 3 step/dir"),
     Setting(SettingId.ESTOP_FITTED, 1, 0, 1, "", "1 when the emergency-stop sense is wired"),
     Setting(SettingId.INVERT_X, 0, 0, 1, "", "1 turns motor X the other way"),
     Setting(SettingId.INVERT_Z, 0, 0, 1, "", "1 turns motor Z the other way"),
@@ -388,4 +401,9 @@ SETTINGS = (
     Setting(SettingId.DEAD_Z, 0, 0, 1000, "steps", "dead steps of Z, last measured"),
     Setting(SettingId.HOMING_REPEATS, 3, 1, 9, "", "measurements per axis; the median counts"),
     Setting(SettingId.SPREAD_MAX, 2, 0, 50, "steps", "largest spread of these measurements"),
+    Setting(SettingId.ACCELERATION, 8000, 1100, 32000, "step/s2", "acceleration along the path"),
+    Setting(SettingId.START_RATE_X, 400, 20, 4000, "step/s", "X starts, stops and turns at it"),
+    Setting(SettingId.START_RATE_Z, 400, 20, 4000, "step/s", "Z starts, stops and turns at it"),
+    Setting(SettingId.IDLE_MS, -1, -1, 32000, "ms", "coils off so long after a move; -1 never"),
+    Setting(SettingId.PULSE_US, 5, 5, 60, "us", "step pulse in coil mode 3"),
 )

@@ -131,6 +131,10 @@ ALARM_TEXTS = {
         "the firmware found itself in a state that cannot be",
         "reset; please report it with the output of `tornillo status --json`",
     ),
+    Alarm.PATH: Explanation(
+        "an arc whose centre does not fit its ends",
+        "reset and home again; please report it with the part file",
+    ),
 }
 
 REFUSAL_TEXTS = {

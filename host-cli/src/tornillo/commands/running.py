@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verbs that move the machine or tell about it: home, run, hold, resume, stop, reset, status."""
+"""Verbs that move the machine or tell about it, from home to status."""
 
 import dataclasses
 
@@ -72,6 +72,21 @@ def resume(follow: bool) -> None:
     with connected() as lathe:
         lathe.resume()
         _started(lathe, follow)
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.argument("percent", type=int)
+def override(percent: int) -> None:
+    """Change the feed of the run to PERCENT (10 to 200) of the programmed one.
+
+    Rapids keep their speed; the next run starts with 100 again.
+
+    \b
+    Example: tornillo override 80
+    """
+    with connected() as lathe:
+        lathe.override(percent)
+    click.echo(f"feed now {percent} %; back with `tornillo override 100`")
 
 
 def _started(lathe: Lathe, follow: bool) -> None:
@@ -193,4 +208,4 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
     return rows
 
 
-VERBS = (home, run, hold, resume, stop, reset, status)
+VERBS = (home, run, hold, resume, override, stop, reset, status)

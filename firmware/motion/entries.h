@@ -1,0 +1,36 @@
+/*
+ * Entries: turns one segment at a time into step-stream entries, with the
+ * dead steps of the screws.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ *
+ * Dead steps come before the first step of an axis in a new direction, in
+ * entries that leave the axis at rest on the path if there are any: behind
+ * the turning point of an arc, and, where an octant ends in one, in its last
+ * entries too. Only what does not fit there gets entries of its own, during
+ * which the tool stands still.
+ *
+ * Used by path.c only; main loop.
+ */
+#ifndef ENTRIES_H
+#define ENTRIES_H
+
+#include <stdint.h>
+
+/* Entries made since entries_begin() that advance the path; the second does
+   not wrap. */
+extern uint16_t entries_made;
+extern uint32_t entries_steps;
+
+/* At the start of a chain: the screws stand as the step stream tells. */
+void entries_begin(void);
+
+/* Takes path_present. */
+void entries_segment(void);
+
+/* Makes entries, at most room (4 or more). Returns how many, 0 when it has
+   to wait for more room, ENTRIES_COMPLETE when the segment has no more. */
+uint8_t entries_make(uint8_t room);
+#define ENTRIES_COMPLETE 0xFF
+
+#endif

@@ -1,0 +1,220 @@
+/* Path: queue of segments, and their entries in the step stream.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "motion/path.h"
+#include "link/protocol.h"  /* axes, settings */
+#include "motion/entries.h" /* generation */
+#include "motion/plan.h"    /* speeds, corners */
+#include "motion/ramp.h"    /* speed */
+#include "motion/stream.h"  /* entries */
+#include "store/settings.h" /* acceleration */
+
+/* Entries generated in one turn of the main loop: bounds the time away from
+   the link, and still keeps ahead of 60,000 entries/s. */
+#define BATCH 64
+
+/* More than a bank: placed by hand, see tornillo.lkr. */
+struct segment __at(0x500) segments[SEGMENTS];
+uint32_t segment_speed[SEGMENTS];
+volatile uint8_t path_head;
+volatile uint8_t path_made;
+volatile uint8_t path_mark;
+uint8_t path_refused;
+
+struct segment path_next;
+struct segment path_present;
+uint32_t path_rate;
+
+uint16_t motion_dead_x;
+uint16_t motion_dead_z;
+
+static uint8_t complete; /* path_source() has no more */
+static uint8_t ended;    /* the end has been pushed */
+static uint8_t started;  /* the interrupt has been set going */
+static uint8_t begun;    /* path_made has been begun */
+
+static uint16_t smaller_setting(uint8_t one, uint8_t other)
+{
+    return settings[one] < settings[other] ? settings[one] : settings[other];
+}
+
+void path_configure(void)
+{
+    ramp_configure(settings[SETTING_ACCELERATION],
+                   smaller_setting(SETTING_START_RATE_X, SETTING_START_RATE_Z),
+                   smaller_setting(SETTING_RAPID_RATE_X, SETTING_RAPID_RATE_Z));
+    plan_configure(); /* counts in braking distances */
+}
+
+void path_begin(void)
+{
+    path_head = 0;
+    path_made = 0;
+    ramp_segment = 0;
+    complete = 0;
+    path_refused = 0;
+    ended = 0;
+    started = 0;
+    begun = 0;
+    entries_begin();
+    plan_begin();
+    ramp_end();
+    stream_prepare();
+}
+
+uint8_t path_busy(void)
+{
+    return !ended || (stream_flags & STREAM_ACTIVE);
+}
+
+void path_cancel(void)
+{
+    stream_abort();
+    ended = 1;
+}
+
+uint32_t path_steps_made(void)
+{
+    uint8_t fill = stream_fill();
+
+    return entries_steps > fill ? entries_steps - fill : 0;
+}
+
+void path_set_home(uint8_t axis)
+{
+    if (axis == AXIS_X) {
+        position_x = 0;
+        slack_x = -(int16_t)motion_dead_x;
+    } else {
+        position_z = 0;
+        slack_z = -(int16_t)motion_dead_z;
+    }
+}
+
+static uint8_t after(uint8_t index)
+{
+    index++;
+    return index == SEGMENTS ? 0 : index;
+}
+
+static uint16_t size(int16_t value)
+{
+    return value < 0 ? -value : value;
+}
+
+/* Entries of a line, and of an arc at least so many. */
+static uint16_t larger_of(uint16_t one, uint16_t other)
+{
+    return one > other ? one : other;
+}
+
+/* Structures are copied byte by byte: the compiler's way takes three times
+   the room. */
+static __data const uint8_t *copy_from;
+static __data uint8_t *copy_to;
+
+static void copy_segment(void)
+{
+    uint8_t i;
+
+    for (i = sizeof(struct segment); i != 0; i--) {
+        *copy_to++ = *copy_from++;
+    }
+}
+
+/* Takes one more segment into the queue, if there is room. */
+static uint8_t accept(void)
+{
+    uint8_t next = after(path_head);
+
+    if (complete || next == ramp_segment) {
+        return 0;
+    }
+    if (!path_source()) {
+        complete = 1;
+        return 0;
+    }
+    path_next.count = 0;
+    if ((path_next.kind & SEGMENT_KIND) <= SEGMENT_ARC_CCW) {
+        path_next.count = larger_of(size(path_next.dx), size(path_next.dz));
+    }
+    plan_next();
+    copy_from = (__data const uint8_t *)&path_next;
+    copy_to = (__data uint8_t *)&segments[path_head];
+    copy_segment();
+    segment_speed[path_head] = path_rate;
+    plan_back(path_head);
+    path_head = next;
+    return 1;
+}
+
+/* Begins the segment at path_made, or goes on to the next; 0 when there is
+   nothing to do now. */
+static uint8_t next_segment(void)
+{
+    __data struct segment *segment = &segments[path_made];
+
+    if (begun) {
+        segment->end = entries_made;
+        if (after(path_made) == path_head) {
+            if (complete) {
+                stream_push(STREAM_END, 0);
+                ended = 1;
+            }
+            return 0;
+        }
+        segment = &segments[after(path_made)];
+        segment->end = entries_made + segment->count;
+        path_made = after(path_made); /* last: ramp_tick() follows it */
+    } else if (path_made == path_head) {
+        return 0;
+    } else {
+        segment->end = entries_made + segment->count;
+    }
+    begun = 1;
+    copy_from = (__data const uint8_t *)segment;
+    copy_to = (__data uint8_t *)&path_present;
+    copy_segment();
+    entries_segment();
+    return 1;
+}
+
+void path_poll(void)
+{
+    uint8_t budget = BATCH;
+    uint8_t room;
+    uint8_t done;
+
+    if (ended) {
+        return;
+    }
+    accept();
+    if (!started && !complete && after(path_head) != ramp_segment) {
+        return; /* look ahead as far as possible before the first step */
+    }
+    while (budget != 0 && !ended && !path_refused) {
+        room = stream_room();
+        if (room < 4) {
+            break;
+        }
+        room -= 2;
+        done = entries_make(room < budget ? room : budget);
+        if (done == ENTRIES_COMPLETE) {
+            done = next_segment();
+        }
+        if (done == 0) {
+            break;
+        }
+        budget -= done;
+    }
+    if (path_refused || (!started && ramp_holding())) {
+        return;
+    }
+    if (!started && (ended || stream_fill() >= STREAM_ENTRIES / 2)) {
+        started = 1;
+        ramp_begin(0);
+        stream_start();
+    } else if (started && !ended && stream_fill() < stream_low) {
+        stream_low = stream_fill();
+    }
+}

@@ -1,0 +1,109 @@
+/* Ramp: set-up, hold and override; the work is in ramp_tick.asm.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "motion/ramp.h"
+#include "motion/path.h" /* segments */
+#include "sfr.h"         /* INTCON */
+
+#define GIEL_MASK 0x40
+
+/* ramp_tick.asm */
+extern volatile uint32_t ramp_start;
+extern volatile uint32_t ramp_top;
+extern volatile uint16_t ramp_step;
+extern volatile uint16_t ramp_scale; /* override, 256 = 100 % */
+extern volatile uint8_t ramp_flags;
+extern volatile uint16_t ramp_brake_speed;
+extern volatile uint16_t ramp_brake_factor;
+extern volatile uint16_t ramp_brake_distance;
+void ramp_brake(void);
+void ramp_set_period(void);
+
+/* Longest way to brake that can be planned, 1/2 step. */
+#define DISTANCE_FAR 60000u
+
+#define RUNNING 0x01
+#define HOLDING 0x02
+#define HELD 0x04
+
+uint16_t ramp_distance(uint16_t speed)
+{
+    uint16_t distance;
+
+    INTCON &= (uint8_t)~GIEL_MASK;
+    ramp_brake_speed = speed;
+    ramp_brake();
+    distance = ramp_brake_distance;
+    INTCON |= GIEL_MASK;
+    return distance;
+}
+
+uint16_t ramp_cap(uint16_t speed)
+{
+    while (ramp_distance(speed) > DISTANCE_FAR) {
+        speed -= speed >> 4;
+    }
+    return speed;
+}
+
+void ramp_configure(uint16_t acceleration, uint16_t start, uint16_t top)
+{
+    ramp_start = (uint32_t)start << 8;
+    ramp_step = (uint16_t)(((uint32_t)acceleration << 8) / 1000);
+    ramp_brake_factor = (uint16_t)((1ul << 24) / acceleration);
+    ramp_top = (uint32_t)ramp_cap(top) << 8;
+    ramp_scale = 256;
+    ramp_stop = ramp_distance(start);
+}
+
+void ramp_set_override(uint8_t percent)
+{
+    uint16_t scale = (((uint16_t)percent << 7) + 25) / 50;
+
+    INTCON &= (uint8_t)~GIEL_MASK;
+    ramp_scale = scale;
+    INTCON |= GIEL_MASK;
+}
+
+void ramp_begin(uint8_t segment)
+{
+    ramp_segment = segment;
+    path_mark = segments[segment].mark;
+    ramp_speed = segment_speed[segment];
+    if (ramp_speed > ramp_start) {
+        ramp_speed = ramp_start;
+    }
+    INTCON &= (uint8_t)~GIEL_MASK;
+    ramp_set_period();
+    INTCON |= GIEL_MASK;
+    ramp_flags |= RUNNING;
+}
+
+void ramp_end(void)
+{
+    ramp_flags = 0;
+}
+
+void ramp_hold(void)
+{
+    ramp_flags |= HOLDING;
+    /* Now, not with the next millisecond. */
+    INTCON &= (uint8_t)~GIEL_MASK;
+    ramp_tick();
+    INTCON |= GIEL_MASK;
+}
+
+uint8_t ramp_holding(void)
+{
+    return ramp_flags & HOLDING;
+}
+
+uint8_t ramp_held(void)
+{
+    return ramp_flags & HELD;
+}
+
+void ramp_release(void)
+{
+    ramp_flags &= (uint8_t) ~(HOLDING | HELD);
+}

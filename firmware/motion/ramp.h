@@ -1,0 +1,73 @@
+/*
+ * Ramp: the speed along the path, one thousand times a second.
+ *
+ * SPDX-License-Identifier: Apache-2.0
+ *
+ * In each millisecond the speed moves by one acceleration step towards the
+ * speed wanted (the segment's, times the override, or the start/stop speed
+ * for a hold), but never so high that the way left to the next corner, and
+ * the speed planned there, no longer suffices to brake. The plan is kept in
+ * braking distances w = v^2 / (2 a), because then it takes only additions:
+ * a segment may be entered with w_entry = min(w_corner, w_exit + length).
+ *
+ *      w |      ___________                 w_exit + way left
+ *        |    /            \  <- braking starts where the lines meet
+ *        |   /              \____
+ *        |__/____________________\____ way
+ *
+ * The new period goes to the step interrupt through stream_period, which it
+ * takes over with its next entry; nothing is ever locked out.
+ *
+ * Units: speeds 1/256 step/s (24 bits); distances 1/2 step (16 bits, up to
+ * 32,767 steps); path counted in entries.
+ */
+#ifndef RAMP_H
+#define RAMP_H
+
+#include <stdint.h>
+
+/* The segment being executed; written by path.c and ramp_tick(). */
+extern volatile uint8_t ramp_segment; /* index into segments[] */
+
+/* Percent of the programmed feed, 10..200; rapids keep theirs. Main loop. */
+void ramp_set_override(uint8_t percent);
+
+/* Braking distance from the start/stop speed, 1/2 step: what may be left at
+   the end of a chain. */
+extern volatile uint16_t ramp_stop;
+
+/* Speed now, 1/256 step/s. */
+extern volatile uint32_t ramp_speed;
+
+/* Acceleration a, step/s^2, 1,100..32,000; start/stop speed and the speed
+   that no override exceeds, step/s. */
+void ramp_configure(uint16_t acceleration, uint16_t start_speed,
+                    uint16_t top_speed);
+
+/* Braking distance from a speed, step/s, in 1/2 steps. Main loop. */
+uint16_t ramp_distance(uint16_t speed);
+
+/* The speed, or less: the fastest that can be braked from within 30,000 steps.
+   Main loop. */
+uint16_t ramp_cap(uint16_t speed);
+
+/* Starts at the start/stop speed with the segment given, or held at once
+   after a ramp_hold() since ramp_end(). */
+void ramp_begin(uint8_t segment);
+
+/* Forgets speed and hold; before a chain. */
+void ramp_end(void);
+
+/* Brakes from the next entry on and stops at the start/stop speed; then
+   ramp_held() is true. */
+void ramp_hold(void);
+uint8_t ramp_held(void);
+uint8_t ramp_holding(void); /* from ramp_hold() to ramp_release() */
+
+/* Goes on. */
+void ramp_release(void);
+
+/* Low-priority interrupt, every millisecond. */
+void ramp_tick(void);
+
+#endif

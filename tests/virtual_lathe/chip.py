@@ -175,6 +175,10 @@ class Chip:
         finally:
             self._native.vl_set_break(address, 0)
 
+    def set_break(self, address: int, on: bool = True) -> None:
+        """Stop :meth:`run_to` before the instruction at a byte address, or no longer."""
+        self._native.vl_set_break(address, int(on))
+
     @property
     def pc(self) -> int:
         """Byte address of the next instruction."""
@@ -329,14 +333,15 @@ class Chip:
         return last + 1 - first
 
     def watch_writes(self, first: int, last: int) -> None:
-        """Log every write of the firmware to RAM first..last (at most 4,096 of them)."""
+        """Log every write of the firmware to RAM first..last (at most 65,536 of them)."""
         if self._native.vl_watch_writes(first, last) != 0:
             raise ValueError(f"{first:#x}..{last:#x} is not in data memory")
 
     def ram_writes(self) -> list[RamWrite]:
         """Return the logged writes to watched addresses."""
-        entries = (RamWriteC * 4096)()
-        count = min(4096, self._native.vl_ram_writes(entries, 4096))
+        room = 65536
+        entries = (RamWriteC * room)()
+        count = min(room, self._native.vl_ram_writes(entries, room))
         return [
             RamWrite(int(e.cycle), int(e.address), int(e.value), int(e.pc)) for e in entries[:count]
         ]

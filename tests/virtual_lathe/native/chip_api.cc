@@ -50,7 +50,7 @@ private:
     Register *inner_;
 };
 
-constexpr size_t WRITE_LOG_MAX = 4096;
+constexpr size_t WRITE_LOG_MAX = 65536;
 std::vector<vl_ram_write> write_log;
 
 void Watched::put(unsigned value)

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+import statistics
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,9 +12,10 @@ import pytest
 from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import on_a_new_chip
-from simulated.watching import Stroke, Watch
+from simulated.watching import SAME_STEP, Stroke, Watch
 from tornillo import Part
 from tornillo.protocol import Axis, CylinderRecord, FaceRecord, State
+from virtual_lathe.chip import CYCLES_PER_SECOND
 from virtual_lathe.part import read_part
 
 HEAD = """
@@ -138,15 +141,20 @@ def run_little_pin(bench: Bench) -> Watch:
     return watch
 
 
+ACCELERATION, START_RATE, RAPID_RATE = 8000, 400, 1000
+#: How much slower than the ideal ramp a rapid may stay: it brakes in whole milliseconds.
+RAMP_LOSS = 0.05
+
+
 def expected_strokes() -> list[Stroke]:
-    """The little pin as firmware/lathe/passes.h describes it, written out."""
+    """The little pin behind the approach as firmware/lathe/passes.h describes it, written out."""
     clear = 60 + 5
-    # To 5 steps in front of the raw face, and on to the face: 6 steps in one pass.
-    approach = [Stroke("X", -(100 - 20 - clear), 1000), Stroke("Z", -(60 - 20), 1000)]
+    # From 5 steps in front of the raw face on to the face: 6 steps in one pass.
     face = [
+        Stroke("Z", -(6 + 5), RAPID_RATE),
         Stroke("X", -65, 400),
-        Stroke("Z", 5, 1000),
-        Stroke("X", 65, 1000),
+        Stroke("Z", 5, RAPID_RATE),
+        Stroke("X", 65, RAPID_RATE),
     ]
     # 25 steps, 2 of them left for finishing: 23 in three passes of 8, 8 and 7.
     levels, passes = [clear, 52, 44, 37, 35], []
@@ -154,13 +162,69 @@ def expected_strokes() -> list[Stroke]:
         down = before - level if before == clear else before + 5 - level
         feed = 200 if level == 35 else 400
         passes += [
-            Stroke("X", -down, 1000),
+            Stroke("X", -down, RAPID_RATE),
             Stroke("Z", -45, feed),
-            Stroke("X", 5, 1000),
-            Stroke("Z", 45, 1000),
+            Stroke("X", 5, RAPID_RATE),
+            Stroke("Z", 45, RAPID_RATE),
         ]
-    park = [Stroke("X", 100 - 20 - 35 - 5, 1000), Stroke("Z", 60 - 20 - 5, 1000)]
-    return [*approach, *face, *passes, *park]
+    park = [Stroke("X", 100 - 20 - 35 - 5, RAPID_RATE), Stroke("Z", 60 - 20 - 5, RAPID_RATE)]
+    return [*face, *passes, *park]
+
+
+def assert_strokes_are_those_expected(watch: Watch, backlash: int = 0) -> None:
+    """Compare every stroke: a cut at its very feed, a rapid as fast as its length allows.
+
+    A rapid of n steps begins and ends with the start rate, or with the feed of the cut before or
+    behind it if that is slower; so it can reach sqrt((begin^2 + end^2) / 2 + acceleration * n),
+    if not the way up alone, sqrt(begin^2 + 2 * acceleration * n), is longer. The dead steps in
+    front of it are steps in which it gains speed too.
+    """
+    found, expected = watch.strokes(), expected_strokes()
+    assert [(s.axis, s.steps) for s in found] == [(s.axis, s.steps) for s in expected]
+    # The first one comes with the speed of the approach and only has to brake.
+    first_peak = math.sqrt(START_RATE**2 + 2 * ACCELERATION * abs(expected[0].steps))
+    assert first_peak * (1 - RAMP_LOSS) <= found[0].rate <= first_peak
+    afterwards = [*expected[2:], Stroke("", 0, START_RATE)]
+    for stroke, wanted, last, then in zip(
+        found[1:], expected[1:], expected, afterwards, strict=False
+    ):
+        if wanted.rate < RAPID_RATE:
+            assert stroke == wanted
+            continue
+        begin, end = min(START_RATE, last.rate), min(START_RATE, then.rate)
+        ways = [ACCELERATION * (abs(stroke.steps) + slack) for slack in (0, backlash)]
+        least, most = (math.sqrt((begin**2 + end**2) / 2 + way) for way in ways)
+        climbing, braking = (math.sqrt(rate**2 + 2 * ways[0]) for rate in (begin, end))
+        least = min(RAPID_RATE, max(begin, min(least, climbing)))
+        most = max(begin, min(RAPID_RATE, most, braking))
+        change = ACCELERATION / 1000
+        assert least * (1 - RAMP_LOSS) - change <= stroke.rate <= most + change, stroke
+
+
+@on_a_new_chip
+def test_the_first_approach_moves_both_slides_in_a_straight_line_with_ramps() -> None:
+    bench = little_pin.homed_lathe_with_pin()
+    watch = run_little_pin(bench)
+    approach = watch.approach()
+    end_x, end_z = 60 + 5, 6 + 5
+    assert (approach[-1].x, approach[-1].z) == (end_x, end_z)
+    start_x, start_z = 100 - 20, 60 - 20
+    across, along = start_x - end_x, start_z - end_z
+    whole = [m for m, then in pairwise(approach) if then.cycle - m.cycle >= SAME_STEP]
+    for movement in whole:
+        done = (start_z - movement.z) / along
+        assert abs(start_x - done * across - movement.x) <= 0.5
+    length = math.hypot(across, along)
+    speeds = []
+    for first, then in pairwise(whole):
+        way = math.hypot(then.x - first.x, then.z - first.z)
+        speeds.append(way * CYCLES_PER_SECOND / (then.cycle - first.cycle))
+    # The corner behind it does not slow down; the whole way is that and the infeed.
+    peak = math.sqrt(START_RATE**2 + ACCELERATION * (length + 6 + 5))
+    # A pair of steps is up to sqrt(2) of the path's own way for one entry; take its mean.
+    mean = [statistics.fmean(speeds[i : i + 6]) for i in range(len(speeds) - 5)]
+    assert 0.9 * peak <= max(mean) <= 1.02 * peak
+    assert all(not movement.cut for movement in approach)
 
 
 @pytest.mark.parametrize("backlash", [0, 12])
@@ -168,7 +232,7 @@ def expected_strokes() -> list[Stroke]:
 def test_each_pass_is_infeed_cut_retract_and_rapid_return(backlash: int) -> None:
     bench = little_pin.homed_lathe_with_pin(backlash_x=backlash, backlash_z=backlash)
     watch = run_little_pin(bench)
-    assert watch.strokes() == expected_strokes()
+    assert_strokes_are_those_expected(watch, backlash)
     little_pin.assert_cut_exactly(bench)
 
 
@@ -180,6 +244,10 @@ def test_metal_is_only_cut_at_feed_and_never_deeper_than_the_depth_of_cut() -> N
     assert {movement.axis for movement in cutting if movement.z > 0} <= {"X"}
     levels = sorted({movement.x for movement in cutting if movement.axis == "Z"}, reverse=True)
     assert levels == [52, 44, 37, 35]
+    for first, then in pairwise(watch.movements):
+        if first.cut and then.cut and first.axis == then.axis:
+            feed = 200 if then.x == 35 and then.axis == "Z" else 400
+            assert then.cycle - first.cycle == CYCLES_PER_SECOND // feed
     report = bench.lathe.report()
     assert report["crashes"] == []
 
@@ -206,7 +274,7 @@ def test_an_operation_inside_what_is_already_cut_costs_no_pass() -> None:
     operations = (*little_pin.OPERATIONS, CylinderRecord(-10, -30, 40), FaceRecord(3, 0))
     once.host.upload(little_pin.image("with-more", operations))
     watch = run_little_pin(once)
-    assert watch.strokes() == expected_strokes()
+    assert_strokes_are_those_expected(watch)
 
 
 @on_a_new_chip

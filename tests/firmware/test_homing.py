@@ -98,7 +98,7 @@ def test_a_switch_reached_while_the_main_loop_looks_whether_the_move_is_over_is_
     bench.wait(lambda: bench.axis(Axis.X).pressed, 10.0, every=1e-3)
     # Now the dead steps are counted; all of the short move is in the stream already.
     bench.run(0.03)
-    assert bench.chip.run_to_address(bench.chip.symbols.code("motion_busy"))
+    assert bench.chip.run_to_address(bench.chip.symbols.code("path_busy"))
     bench.abort_stream()
     bench.chip.set_variable("guard_stopped", 1)
     bench.run(0.002)

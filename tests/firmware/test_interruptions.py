@@ -4,30 +4,25 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import pytest
 from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import branch, on_a_new_chip
+from simulated.standing import COILS, REST_CYCLES, Holds, Limits, assert_nothing_moves, entries
 from tornillo.protocol import Alarm, Axis, ErrorCode, State
 from virtual_lathe.chip import CYCLES_PER_SECOND
 from virtual_lathe.machine import AxisName
 
-COILS = ("RB0", "RB1", "RB2", "RB3", "RD0", "RD1", "RD2", "RD3")
 STOP_WITHIN_S = 0.005
+LIMITS = Limits()
 
 
 def coils(bench: Bench) -> tuple[int, int]:
     """Return the patterns on the coil pins, X and Z."""
     return bench.chip.port("D") & 15, bench.chip.port("B") & 15
-
-
-def assert_nothing_moves(bench: Bench, seconds: float = 0.05) -> None:
-    """Check that no coil changes for some time."""
-    bench.chip.log_pins(*COILS)
-    bench.run(seconds)
-    assert bench.chip.pin_changes() == []
 
 
 def running_lathe(**options: Any) -> Bench:
@@ -37,10 +32,18 @@ def running_lathe(**options: Any) -> Bench:
     return bench
 
 
+@pytest.mark.parametrize("rate", [1000, 3000])
 @on_a_new_chip
-def test_hold_freezes_between_two_steps_and_run_goes_on_without_losing_one() -> None:
-    bench = running_lathe(backlash_x=7, backlash_z=12)
-    holds = 0
+def test_hold_brakes_within_the_braking_distance_and_run_goes_on_without_losing_a_step(
+    rate: int,
+) -> None:
+    bench = little_pin.lathe_with_pin(backlash_x=7, backlash_z=12, pull_in=float(rate + 100))
+    bench.set(rapid_rate_x=rate, rapid_rate_z=rate)
+    bench.home()
+    bench.host.run()
+    bench.run(0.12)  # in the approach one entry is more than a step of the path
+    following = Holds(bench, LIMITS)
+    braked, holds = 0, 0
     while bench.is_in(State.RUNNING):
         bench.run(0.0371)
         if bench.is_in(State.RUNNING):
@@ -49,15 +52,72 @@ def test_hold_freezes_between_two_steps_and_run_goes_on_without_losing_one() -> 
                 bench.press("hold", 0.006)
             else:
                 bench.host.hold()
-            assert bench.is_in(State.HOLD)
-            assert_nothing_moves(bench, 0.03)
+            braked = max(braked, following.come_to_a_stand())
+            assert bench.position == (bench.axis(Axis.X).slide, bench.axis(Axis.Z).slide)
             if holds % 2:
                 bench.press("run", 0.006)
             else:
                 bench.host.resume()
     assert holds > 20
+    assert braked > 10
     assert bench.status().finished
     little_pin.assert_cut_exactly(bench)
+
+
+@pytest.mark.parametrize("acceleration", [8000, 32000])
+@on_a_new_chip
+def test_behind_a_rest_a_slide_starts_no_faster_than_the_start_rate(acceleration: int) -> None:
+    bench = little_pin.lathe_with_pin()
+    bench.set(acceleration=acceleration)
+    bench.home()
+    bench.chip.log_pins(*COILS)
+    bench.host.run()
+    bench.wait_for(State.IDLE)
+    times = entries(bench.chip.pin_changes())
+    intervals = [after - time for time, after in pairwise(times)]
+    rests = [number for number, interval in enumerate(intervals) if interval > REST_CYCLES]
+    # Between the way out of the face and the first infeed.
+    assert len(rests) >= 1
+    start = CYCLES_PER_SECOND // LIMITS.start_rate
+    assert min(intervals[number + 1] for number in rests if number + 1 < len(intervals)) >= (
+        CYCLES_PER_SECOND // (LIMITS.start_rate + 3 * acceleration // 1000)
+    )
+    assert min(intervals[number] - REST_CYCLES for number in rests) >= start
+
+
+@on_a_new_chip
+def test_resume_while_it_still_brakes_goes_on_and_a_second_hold_or_resume_changes_nothing() -> None:
+    bench = running_lathe(backlash_x=7, backlash_z=12)
+    bench.run(0.06)
+    for _ in range(8):
+        bench.run(0.05)
+        bench.host.hold()
+        bench.host.hold()
+        bench.host.resume()
+        bench.host.resume()
+        assert bench.is_in(State.RUNNING)
+    bench.wait_for(State.IDLE)
+    assert bench.status().finished
+    little_pin.assert_cut_exactly(bench)
+
+
+@on_a_new_chip
+def test_stop_while_a_hold_brakes_or_stands_ends_the_run_and_keeps_the_position() -> None:
+    bench = running_lathe(backlash_x=7, backlash_z=12)
+    bench.run(0.3)
+
+    def stop_after(seconds: float) -> None:
+        bench.host.hold()
+        bench.run(seconds)
+        bench.host.stop()
+        assert (bench.state, bench.homed) == (State.IDLE, True)
+        assert_nothing_moves(bench)
+        bench.host.run()
+        bench.wait_for(State.IDLE)
+        little_pin.assert_cut_exactly(bench)
+
+    for seconds in (0.0, 0.004, 0.3):
+        branch(partial(stop_after, seconds))
 
 
 @on_a_new_chip
@@ -143,7 +203,7 @@ def test_a_trip_while_the_main_loop_looks_whether_the_run_is_over_does_not_finis
     bench.wait(lambda: bench.axis(Axis.X).slide == -20, 5.0)
     bench.wait(lambda: bench.axis(Axis.Z).slide > -40, 5.0)
     # On the last way home; all of it is in the stream already.
-    assert bench.chip.run_to_address(bench.chip.symbols.code("motion_busy"))
+    assert bench.chip.run_to_address(bench.chip.symbols.code("path_busy"))
     bench.abort_stream()
     bench.chip.set_variable("guard_tripped", 0x01)
     bench.run(0.01)
@@ -193,8 +253,8 @@ def test_a_limit_switch_while_homed_is_an_alarm_with_its_axis_and_the_coils_hold
 def test_a_stream_that_runs_dry_in_mid_move_is_an_alarm() -> None:
     bench = running_lathe()
     bench.run(0.3)
-    # In the state HOLD the main loop plans nothing; the step interrupt was not told.
-    bench.chip.set_variable("machine_state", State.HOLD)
+    # In the state IDLE the main loop plans nothing; the step interrupt was not told.
+    bench.chip.set_variable("machine_state", State.IDLE)
     bench.wait_for(State.ALARM, 1.0)
     assert bench.alarm == (Alarm.STREAM_DRY, 0)
     assert not bench.homed

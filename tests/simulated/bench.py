@@ -155,7 +155,6 @@ class Bench:
         chip = self.chip
         chip.write(PIE2, chip.read(PIE2) & ~CCP2IE)
         chip.set_variable("stream_tail", chip.variable("stream_head"))
-        chip.set_variable("speed_tail", chip.variable("speed_head"))
         chip.set_variable("stream_next", 0)
         chip.set_variable("stream_flags", 0)
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 
 from tornillo.protocol import Axis
 from virtual_lathe.chip import CYCLES_PER_SECOND
@@ -13,10 +14,16 @@ from virtual_lathe.machine import Move
 
 from simulated.bench import Bench
 
+#: Both ports are written by one interrupt, this many cycles apart at most.
+SAME_STEP = 10
+
 
 @dataclass(frozen=True)
 class Stroke:
-    """Movement of one slide in one direction: steps with sign, rate of its last step in steps/s."""
+    """Movement of one slide in one direction: steps with sign, its highest rate in steps/s.
+
+    The interval in front of its first step belongs to the corner and does not count.
+    """
 
     axis: str
     steps: int
@@ -79,18 +86,29 @@ class Watch:
         front = range(math.floor(z), self._work.stock.allowance + 1)
         return all(self._work.radius_at(place) < x for place in front)
 
+    def approach(self) -> list[Movement]:
+        """Return the movements up to the last step of both slides at once."""
+        both = [
+            number
+            for number, (first, then) in enumerate(pairwise(self.movements))
+            if then.cycle - first.cycle < SAME_STEP
+        ]
+        return self.movements[: both[-1] + 2] if both else []
+
     def strokes(self) -> list[Stroke]:
-        """Return the run as strokes of one slide each."""
+        """Return what follows the approach as strokes of one slide each."""
+        first = self.approach()
         found: list[Stroke] = []
-        cycle = 0
-        for movement in self.movements:
+        cycle = first[-1].cycle if first else 0
+        for movement in self.movements[len(first) :]:
             rate = round(CYCLES_PER_SECOND / (movement.cycle - cycle))
             cycle = movement.cycle
             last = found[-1] if found else Stroke("", 0, 0)
             if last.axis == movement.axis and last.steps * movement.direction > 0:
+                rate = max(last.rate, rate)
                 found[-1] = Stroke(last.axis, last.steps + movement.direction, rate)
             else:
-                found.append(Stroke(movement.axis, movement.direction, rate))
+                found.append(Stroke(movement.axis, movement.direction, 0))
         return found
 
     def slack_steps(self) -> list[Slack]:

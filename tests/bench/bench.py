@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 from measure import BenchError, Figures, command_line, cut_test_bar, sizes
+from motion_figures import motion_figures
 from page import fill
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -17,12 +18,17 @@ PAGE = ROOT / "docs" / "benchmarks.md"
 
 def figures() -> Figures:
     """Everything that is measured, with the date and the computer."""
+    bar = cut_test_bar()
+    motion = motion_figures()
+    worst = max(bar["isr_worst_cycles"], motion["isr_worst_cycles"])
     return {
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
         "computer": f"{platform.system()} {platform.machine()}, Python {platform.python_version()}",
         **sizes(),
         **command_line(),
-        **cut_test_bar(),
+        **bar,
+        **motion,
+        "isr_worst_cycles": worst,
     }
 
 

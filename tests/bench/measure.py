@@ -121,7 +121,7 @@ def _follow(lathe: VirtualLathe, chip: Lathe, state: State) -> Status:
 
 
 def _speed(trace: Path, feed: int) -> Figures:
-    """Regularity and mean error of the cutting speed; `feed` in 1/256 step/s.
+    """Regularity and mean error of the cutting speed behind its ramps; `feed` in 1/256 step/s.
 
     Planned is a whole number of cycles for each step, begun anew with each move.
     """
@@ -130,10 +130,12 @@ def _speed(trace: Path, feed: int) -> Figures:
     means: list[float] = []
     for move in _moves(trace):
         intervals = [after - before for before, after in pairwise(move)]
-        if len(intervals) < 100 or abs(intervals[0] - period) > period // 10:
+        even = [n for n, interval in enumerate(intervals) if abs(interval - period) < period // 200]
+        if len(even) < 100:
             continue
-        late += [at - move[0] - number * period for number, at in enumerate(move)]
-        means.append(statistics.mean(intervals))
+        cruise = move[even[0] : even[-1] + 2]
+        late += [at - cruise[0] - number * period for number, at in enumerate(cruise)]
+        means.append(statistics.mean(intervals[even[0] : even[-1] + 1]))
     if not means:
         raise BenchError("no cutting move found in the trace")
     wanted = CYCLES_PER_SECOND * 256 / feed

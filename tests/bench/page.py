@@ -4,6 +4,7 @@
 import re
 
 from measure import Figures
+from motion_page import motion_rows
 
 MARKER = re.compile(r"(<!-- bench -->\n).*?(<!-- end -->)", re.DOTALL)
 CYCLES_PER_US = 12
@@ -32,17 +33,17 @@ def rows(found: Figures) -> list[Row]:
         ("hardware stack, worst path", f"{found['hw_stack_worst_levels']} of 31 levels", ""),
         (
             "step interrupt, worst",
-            f"{_cycles(found['isr_worst_cycles'])}, one axis",
-            "506 cycles (31.6 us) one axis, own time",
+            _cycles(found["isr_worst_cycles"]),
+            "506 (one axis) to 583 cycles (arc), own time",
         ),
         ("low-priority interrupt, worst", _cycles(found["low_isr_worst_cycles"]), ""),
         (
-            "step times, constant speed, status 10 times a second: largest difference from planned",
+            "test bar, step times in the cut, status 10 times a second: most off the plan",
             _cycles(jitter),
             "7 to 11 us peak to peak",
         ),
         (
-            "error of the feed",
+            "test bar, error of the feed",
             f"{found['feed_error_ppm'] / 1e4:+.4f} %",
             "-0.025 to -0.10 %",
         ),
@@ -62,6 +63,7 @@ def rows(found: Figures) -> list[Row]:
             )
             for entry in found["dimensions"]
         ),
+        *motion_rows(found),
         ("* `sim_realtime_factor`, cutting", f"{found['sim_realtime_factor']:.1f}", ""),
         ("* `sim_realtime_factor_idle`", f"{found['sim_realtime_factor_idle']:.1f}", ""),
         ("* start of the command line, median of 10", f"{found['cli_start_s']:.2f} s", ""),

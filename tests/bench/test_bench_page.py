@@ -2,6 +2,7 @@
 """The table of docs/benchmarks.md."""
 
 from page import fill
+from test_motion_page import FOUND as MOTION
 
 FOUND = {
     "date": "2026-01-31",
@@ -21,16 +22,17 @@ FOUND = {
     "stream_low_entries": 80,
     "isr_worst_cycles": 96,
     "low_isr_worst_cycles": 420,
+    **MOTION,
     "dimensions": [{"name": "diameter", "wanted_mm": 15.24, "cut_mm": 15.2339, "error_steps": -1}],
 }
 
 
 def test_the_table_is_replaced_and_the_text_around_it_stays() -> None:
-    page = "# Title\n\n<!-- bench -->\nold\n<!-- end -->\n\nend\n"
+    page = "# Title\n\n<!-- bench -->\nof yesterday\n<!-- end -->\n\nend\n"
     once = fill(page, FOUND)
     assert once.startswith("# Title\n\n<!-- bench -->\nMeasured on 2026-01-31; Linux.\n")
     assert once.endswith("\n<!-- end -->\n\nend\n")
-    assert "old" not in once
+    assert "of yesterday" not in once
     assert fill(once, FOUND) == once
 
 
@@ -38,6 +40,7 @@ def test_figures_stand_beside_those_of_the_peer_with_their_units() -> None:
     page = fill("<!-- bench -->\n<!-- end -->\n", FOUND)
     assert "| flash | 16,384 bytes (50 %) | 29,864 bytes (91 %) |" in page
     assert "| RAM, static and worst stack | 1,000 of 2,048 bytes |" in page
-    assert "| step interrupt, worst | 96 cycles (8.0 us), one axis |" in page
-    assert "| error of the feed | -0.0044 % |" in page
+    assert "| step interrupt, worst | 96 cycles (8.0 us) |" in page
+    assert "| test bar, error of the feed | -0.0044 % |" in page
+    assert "| 37.20 s, 39.10 s | 39.46 s |" in page
     assert "| test bar, diameter | 15.234 mm, error -1 steps |  |" in page

@@ -130,9 +130,15 @@ in_host_cli() (cd host-cli && "$@")
 
 step "cppcheck firmware" check_c
 step "clang-format" clang-format --dry-run --Werror "${formatted[@]}"
-step "C in 80 columns, under 400 lines" short_enough 80 400 "${firmware_c[@]}" \
+# A generated file is as long as what it is generated from.
+mapfile -t written_c < <(printf '%s\n' "${firmware_c[@]}" |
+    grep -vx firmware/link/protocol.h)
+mapfile -t written_python < <(printf '%s\n' "${python[@]}" |
+    grep -vx host-cli/src/tornillo/protocol.py)
+step "C in 80 columns, under 400 lines" short_enough 80 400 "${written_c[@]}" \
     "${native[@]}" "${assembly[@]}"
-step "Python in 100 columns, under 400" short_enough 100 400 "${python[@]}"
+step "Python in 100 columns, under 400" short_enough 100 400 \
+    "${written_python[@]}"
 step "ruff check" "$venv/bin/ruff" check --quiet .
 step "ruff format" "$venv/bin/ruff" format --quiet --diff .
 step "mypy host-cli" in_host_cli "$venv/bin/mypy"

@@ -197,12 +197,17 @@ uint16_t arc_next(void)
     }
     arc_minor_flags = arc_growing ? back(outwards) : outwards;
     arc_turns = !arc_growing;
+    /* The end in this run: at most a step beyond the extremum, never beyond
+       the border, where the path is steeper than a diagonal step. */
     if ((arc_signs & END_OUTWARDS) && arc_rest_p >= 0 &&
-        (uint16_t)arc_rest_p <= entries + 1) {
+        (uint16_t)arc_rest_p <= entries + arc_turns) {
         entries = (uint16_t)arc_rest_p;
         arc_turns = 0;
     }
     run_sine = (((uint32_t)arc_scaled_p << 16) / radius) << 8;
+    if (arc_growing && (arc_signs & P_NEGATIVE)) {
+        run_sine = -run_sine; /* up to half a step before the extremum */
+    }
     arc_entries = entries;
     arc_set_up();
     return entries;

@@ -13,10 +13,9 @@ from motion.strategies import arcs, lines, rates
 from motion.trace import Judgement, Trace, feed_errors, judge_all
 
 LINE_BOUND = 0.5 + 1e-9
-# Radius from which on, and bound. Below R 7 one arc in a hundred makes one entry too many in an
-# octant before it turns into the next.
-ARC_BOUNDS = ((7.0, 0.51), (5.0, 0.6), (0.0, 1.0))
-FEED_BOUND_PCT = 2.0
+# Radius from which on, and bound.
+ARC_BOUNDS = ((5.0, 0.51), (0.0, 1.0))
+FEED_BOUND_PCT = 1.0
 FEED_RADIUS = 20.0
 REPEATABLE = settings(
     derandomize=True,
@@ -60,6 +59,10 @@ ONCE_WRONG = (
     Arc(-3, 0, -1.5, 22.951034835057, False, 8_000),
     Arc(2, -2, 13.489850074338827, 11.489850074338827, True, 8_000),
     Arc(3, -1, 10664.700258365216, 31989.10077509565, True, 8_000),
+    # an end behind the border, taken for one in the same octant
+    Arc(-2, 4, 4.529291954192588, 4.7646459770962934, False, 8_000),
+    Arc(0, 1, 5.037369911167847, 0.5, True, 8_000),
+    Arc(4, -9, 3.4067589268671594, -3.8747738102812623, False, 8_000),
     Arc(-7973, -218, -4796.367703790442, 29510.611019821994, False, 8_000),
 )
 

@@ -4,7 +4,7 @@
 from collections import Counter
 
 from shrink_flow import BRANCH, Liveness
-from shrink_model import Function, Line, Program
+from shrink_model import Function, Line, Program, places
 from shrink_registers import drop_lines
 from shrink_simplify import after_skip
 
@@ -105,12 +105,7 @@ def _high_part(body: list[Line], index: int) -> int:
 def branch_over_jumps(function: Function, reach: int) -> None:
     """Turn a branch over a jump into one branch, where it reaches: BNZ x; BRA y; x:."""
     body = function.body
-    at: list[int] = []
-    address = 0
-    for line in body:
-        at.append(address)
-        address += line.size()
-    place = {line.label: at[index] for index, line in enumerate(body) if not line.op}
+    place, at = places(body)
     gone = []
     for index in range(len(body) - 2):
         line, jump, label = body[index : index + 3]

@@ -8,7 +8,7 @@ import itertools
 from collections import Counter
 
 from shrink_flow import BRANCH
-from shrink_model import Function, Line, Program
+from shrink_model import Function, Line, Program, places
 from shrink_simplify import after_skip
 
 BRANCH_REACH = 254  # bytes; a conditional branch backward reaches 256
@@ -65,15 +65,8 @@ def _joined(caller: Function, called: Function) -> list[Line] | None:
 
 def _if_in_reach(caller: Function, body: list[Line]) -> list[Line] | None:
     """Return the lines if all conditional branches reach as they did; None if not."""
-    place: dict[str, int] = {}
-    at: list[int] = []
-    address = 0
-    for line in body:
-        at.append(address)
-        if not line.op:
-            place[line.label] = address
-        address += line.size()
-    if address > 2000:
+    place, at = places(body)
+    if at[-1] + body[-1].size() > 2000:
         return None
     for line, here in zip(body, at, strict=True):
         if line.op in BRANCH and abs(place[line.args[0]] - here) > BRANCH_REACH:

@@ -4,7 +4,7 @@
 import itertools
 
 from shrink_compares import branch_over_jumps
-from shrink_model import Function, Line, Program
+from shrink_model import Function, Line, Program, places
 from shrink_registers import drop_lines
 from shrink_simplify import after_skip
 
@@ -114,12 +114,7 @@ def _drop_jumps_to_next(function: Function) -> None:
 def _branch_on_flags(function: Function) -> None:
     """Turn a skip on a flag and the jump it skips into one branch, where it reaches."""
     body = function.body
-    at: list[int] = []
-    address = 0
-    for line in body:
-        at.append(address)
-        address += line.size()
-    place = {line.label: at[index] for index, line in enumerate(body) if not line.op}
+    place, at = places(body)
     gone = []
     for index, (line, jump) in enumerate(itertools.pairwise(body)):
         branch = ON_FLAG.get((line.op, line.args[-1])) if line.args[:1] == ["STATUS"] else None

@@ -7,7 +7,7 @@ instruction only ever gets shorter, so what reaches once reaches ever after.
 
 from collections import Counter
 
-from shrink_model import Line, Program, RefusalError
+from shrink_model import Program, RefusalError, places
 
 REACH = {"CALL": 1024, "RCALL": 1024, "GOTO": 1024, "BRA": 1024}
 REACH_BRANCH = 128
@@ -91,7 +91,7 @@ def shorten(program: Program, names: list[str]) -> int:
     while changed:
         changed = False
         lines = [line for name in names for line in program.functions[name].body]
-        place, at = _places(lines)
+        place, at = places(lines)
         for line, here in zip(lines, at, strict=True):
             if (
                 line.op in SHORT
@@ -108,7 +108,7 @@ def shorten(program: Program, names: list[str]) -> int:
 def check_reach(program: Program, names: list[str]) -> None:
     """Raise RefusalError if a short jump or call does not reach its target."""
     lines = [line for name in names for line in program.functions[name].body]
-    place, at = _places(lines)
+    place, at = places(lines)
     for line, here in zip(lines, at, strict=True):
         limit = (
             REACH_BRANCH
@@ -117,18 +117,6 @@ def check_reach(program: Program, names: list[str]) -> None:
         )
         if limit and line.op not in SHORT and not _reaches(place[line.args[0]] - here - 2, limit):
             raise RefusalError(f"out of reach: {line.text().strip()}")
-
-
-def _places(lines: list[Line]) -> tuple[dict[str, int], list[int]]:
-    place: dict[str, int] = {}
-    at: list[int] = []
-    address = 0
-    for line in lines:
-        at.append(address)
-        if not line.op:
-            place[line.label] = address
-        address += line.size()
-    return place, at
 
 
 def _reaches(distance: int, limit: int) -> bool:

@@ -115,6 +115,19 @@ class Program:
     configuration: list[str] = field(default_factory=list)
 
 
+def places(lines: list[Line]) -> tuple[dict[str, int], list[int]]:
+    """Bytes from the first line to each label, and to each line."""
+    place: dict[str, int] = {}
+    at: list[int] = []
+    address = 0
+    for line in lines:
+        at.append(address)
+        if not line.op:
+            place[line.label] = address
+        address += line.size()
+    return place, at
+
+
 def split_arguments(text: str) -> list[str]:
     """Split an operand list at its commas (none stand inside parentheses)."""
     return [part.strip() for part in text.split(",")] if text.strip() else []

@@ -15,7 +15,7 @@ from virtual_lathe.worker import in_new_process
 
 SEED = 7
 LINES, ARCS, SLOW_MOVES = 100, 300, 80
-SMALL_ARCS, SMALL_RADIUS = 400, 8.0
+SMALL_ARCS = 400
 LARGEST_RADIUS = 60_000.0
 LONGEST = 4_000.0
 FAST_RATE = 12_000.0
@@ -98,14 +98,14 @@ def _measure() -> dict[str, Any]:
         arc = random_arc(chance, 5.0, LARGEST_RADIUS, LONGEST, FAST_RATE)
         take(rig, arc, arcs, band_of(arc.radius))
     for _ in range(SMALL_ARCS):
-        arc = random_arc(chance, 5.0, SMALL_RADIUS, LONGEST, FAST_RATE)
+        arc = random_arc(chance, 5.0, FEED_RADIUS, LONGEST, FAST_RATE)
         take(rig, arc, arcs, band_of(arc.radius))
     for _ in range(SLOW_MOVES):
         rate = math.exp(chance.uniform(math.log(10.0), math.log(3_000.0)))
         steps = max(20.0, rate / 4.0)
-        take(rig, random_line(chance, int(steps), rate), slow, "lines")
+        take(rig, random_line(chance, int(steps), rate), slow)
         arc = random_arc(chance, FEED_RADIUS, 5_000.0, steps, rate)
-        take(rig, arc, slow, "arcs")
+        take(rig, arc, slow)
         take(rig, random_arc(chance, 5.0, FEED_RADIUS, 60.0, rate), tiny)
     return {
         "line_error_max_steps": lines.worst,

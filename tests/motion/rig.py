@@ -237,6 +237,12 @@ class Rig:
         """Back to IDLE and homed, whatever has happened: a restart."""
         self.settle()
 
+    def ready(self) -> Rig:
+        """The rig, restarted if what was before has left it in trouble."""
+        if not self.is_in(State.IDLE):
+            self.recover()
+        return self
+
     def quick(self, rate: int = 20_000, acceleration: int = 32_000, top: int = 32_000) -> None:
         """Settings without ramps up to a rate: it is the start/stop rate of both axes.
 

@@ -5,13 +5,24 @@ from __future__ import annotations
 
 import math
 
-from hypothesis import reject
+from hypothesis import HealthCheck, reject, settings
 from hypothesis import strategies as st
 
 from .reference import Arc, Line, Move, arc_between
 
 SMALLEST_RADIUS, LARGEST_RADIUS = 5.0, 60_000.0
 EIGHTHS = tuple(k * math.pi / 4 for k in range(8))
+
+
+def repeatable(examples: int) -> settings:
+    """Settings of a property test that tries the same examples every time."""
+    return settings(
+        derandomize=True,
+        max_examples=examples,
+        deadline=None,
+        database=None,
+        suppress_health_check=list(HealthCheck),
+    )
 
 
 def rates(lowest: float = 2_000.0, highest: float = 15_000.0) -> st.SearchStrategy[float]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from simulated.processes import on_a_new_chip
 from tornillo.protocol import State
@@ -14,7 +14,7 @@ from virtual_lathe.chip import CYCLES_PER_SECOND
 
 from motion.reference import Arc, Line, Move, Segment, Signal, Wait, jump
 from motion.rig import Rig
-from motion.strategies import chains
+from motion.strategies import chains, repeatable
 from motion.trace import Trace, feed_errors, judge_all
 
 BOUND = 0.51
@@ -22,20 +22,7 @@ FEED_BOUND_PCT = 2.0
 # Where an axis turns back the tool rests.
 TURNS_BACK = 0.97
 CYCLES_PER_MS = CYCLES_PER_SECOND // 1000
-REPEATABLE = settings(
-    derandomize=True,
-    max_examples=12,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
-
-
-def ready(rig: Rig) -> Rig:
-    """The rig, restarted if the example before has left it in trouble."""
-    if not rig.is_in(State.IDLE):
-        rig.recover()
-    return rig
+REPEATABLE = repeatable(12)
 
 
 def one_rate(chain: list[Move], rate: float) -> list[Move]:
@@ -69,7 +56,7 @@ def test_a_chain_visits_every_point_of_its_segments_in_order() -> None:
     @REPEATABLE
     @given(chain=chains())
     def check(chain: list[Move]) -> None:
-        trace = ready(rig).follow(chain, 60.0)
+        trace = rig.ready().follow(chain, 60.0)
         for move, judged in judge_all(trace, chain):
             assert judged.worst <= BOUND, move
 
@@ -89,7 +76,7 @@ def test_a_chain_at_one_feed_keeps_it_over_the_joints() -> None:
             wide = isinstance(move, Line) or move.radius >= 100.0
             if wide and jump(steady[-1], move) < TURNS_BACK:
                 steady.append(move)
-        trace = ready(rig).follow(steady, 120.0)
+        trace = rig.ready().follow(steady, 120.0)
         lengths = [length for _, judged in judge_all(trace, steady) for length in judged.lengths]
         assert feed_errors(trace, lengths, [rate] * len(lengths)) <= FEED_BOUND_PCT
 
@@ -123,7 +110,7 @@ def test_no_axis_is_faster_than_its_maximum() -> None:
     @REPEATABLE
     @given(chain=chains(most=12))
     def check(chain: list[Move]) -> None:
-        trace = ready(rig).follow(one_rate(chain, 9_000.0), 60.0)
+        trace = rig.ready().follow(one_rate(chain, 9_000.0), 60.0)
         for axis, most in ((0, 2_000), (1, 3_000)):
             times = axis_times(trace, axis)
             # Over 16 steps: single ones of the slower axis fall on the grid of the faster.
@@ -143,7 +130,7 @@ def test_a_hold_loses_nothing_wherever_it_comes() -> None:
         waits=st.lists(st.floats(0.0, 0.2), min_size=1, max_size=4),
     )
     def check(chain: list[Move], waits: list[float]) -> None:
-        plain = ready(rig).follow(chain, 60.0)
+        plain = rig.ready().follow(chain, 60.0)
         rig.start(chain)
         for wait in waits:
             rig.run(wait)

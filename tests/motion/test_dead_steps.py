@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import itertools
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from simulated.processes import on_a_new_chip
 from tornillo.protocol import State
@@ -13,26 +13,19 @@ from tornillo.protocol import State
 from motion.backlash import tool_points
 from motion.reference import Arc, Line, Move, Point
 from motion.rig import Rig
-from motion.strategies import chains
+from motion.strategies import chains, repeatable
 from motion.trace import Trace, judge, split
 
 BOUND = 0.51
 DEAD = (23, 31)
-REPEATABLE = settings(
-    derandomize=True,
-    max_examples=12,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+REPEATABLE = repeatable(12)
 PLAY = st.tuples(st.integers(0, 60), st.integers(0, 60))
 SIDES = st.tuples(st.booleans(), st.booleans())
 
 
 def ready(rig: Rig, dead: Point, pulled: tuple[bool, bool]) -> Point:
     """Give the screws play, each taken up towards plus or, if pulled, minus; returns the slack."""
-    if not rig.is_in(State.IDLE):
-        rig.recover()
+    rig.ready()
     slack = (-dead[0] if pulled[0] else 0, -dead[1] if pulled[1] else 0)
     rig.dead_steps(*dead, *slack)
     return slack

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from simulated.processes import on_a_new_chip
 from tornillo.protocol import State
@@ -13,18 +13,12 @@ from virtual_lathe.chip import CYCLES_PER_SECOND
 
 from motion.reference import Line, Move
 from motion.rig import Rig
-from motion.strategies import chains
+from motion.strategies import chains, repeatable
 from motion.trace import Trace
 
 FEED, RAPID, TOP = 1_000.0, 2_500.0, 3_000
 # The bound of the feed: 2 %.
-REPEATABLE = settings(
-    derandomize=True,
-    max_examples=6,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+REPEATABLE = repeatable(6)
 
 
 def ready() -> Rig:
@@ -89,9 +83,7 @@ def test_overrides_change_when_steps_come_and_never_which() -> None:
         changes=st.lists(st.tuples(st.floats(0.0, 0.1), st.integers(10, 200)), max_size=6),
     )
     def check(chain: list[Move], changes: list[tuple[float, int]]) -> None:
-        if not rig.is_in(State.IDLE):
-            rig.recover()
-        plain = rig.follow(chain, 60.0)
+        plain = rig.ready().follow(chain, 60.0)
         lathe = rig.connect()
         rig.start(chain)
         for pause, percent in changes:

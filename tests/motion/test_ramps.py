@@ -6,14 +6,13 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from simulated.processes import on_a_new_chip
-from tornillo.protocol import State
 from virtual_lathe.chip import CYCLES_PER_SECOND
 
 from motion.reference import Arc, Line, Move, jump, limits_kept, profile_time, ramp_time
 from motion.rig import Rig
-from motion.strategies import chains
+from motion.strategies import chains, repeatable
 from motion.trace import Judgement, Trace, judge_all
 
 ACCELERATION, START, TOP = 20_000.0, 600.0, 6_000.0
@@ -23,20 +22,7 @@ GRAIN = 0.02
 # From a change of direction by one on an axis turns back, and the tool rests for 10 ms; the chip
 # knows directions to one in 128.
 TURNS_BACK, REST_S = 0.97, 0.010
-REPEATABLE = settings(
-    derandomize=True,
-    max_examples=12,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
-
-
-def ready(rig: Rig) -> Rig:
-    """The rig with its settings, restarted if the example before has left it in trouble."""
-    if not rig.is_in(State.IDLE):
-        rig.recover()
-    return rig
+REPEATABLE = repeatable(12)
 
 
 def ramped() -> Rig:
@@ -99,7 +85,7 @@ def test_speed_changes_no_faster_than_the_acceleration() -> None:
         round_enough = [m for m in chain if isinstance(m, Line) or m.radius >= 50.0]
         if not round_enough:
             return
-        trace = ready(rig).follow(round_enough, 60.0)
+        trace = rig.ready().follow(round_enough, 60.0)
         found, lasted = speeds(trace, round_enough)
         rests = turned(judge_all(trace, round_enough))
         for i in range(len(found) - 1):
@@ -123,7 +109,7 @@ def test_no_axis_jumps_by_more_than_its_start_speed_at_a_corner() -> None:
         lines = [m for m in chain if isinstance(m, Line) and m.length >= 3.0]
         if len(lines) < 2:
             return
-        trace = ready(rig).follow(list(lines), 60.0)
+        trace = rig.ready().follow(list(lines), 60.0)
         parts = judge_all(trace, lines)
         found, _ = speeds(trace, list(lines))
         at = -1
@@ -168,7 +154,7 @@ def test_a_chain_takes_hardly_longer_than_its_corners_demand() -> None:
     @REPEATABLE
     @given(chain=chains(most=12))
     def check(chain: list[Move]) -> None:
-        trace = ready(rig).follow(chain, 60.0)
+        trace = rig.ready().follow(chain, 60.0)
         rests = sum(jump(one, other) > TURNS_BACK for one, other in pairwise(chain))
         least = least_time(chain) + rests * (REST_S + 1.0 / START)
         assert trace.seconds + 1.0 / START <= 1.1 * least + len(chain) * 3 * TICK_S

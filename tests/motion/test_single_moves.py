@@ -4,12 +4,12 @@
 import math
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from simulated.processes import on_a_new_chip
 
 from motion.reference import Arc, Line, Move, arc_between, arc_through
 from motion.rig import Rig
-from motion.strategies import arcs, lines, rates
+from motion.strategies import arcs, lines, rates, repeatable
 from motion.trace import Judgement, Trace, feed_errors, judge_all
 
 LINE_BOUND = 0.5 + 1e-9
@@ -17,13 +17,7 @@ LINE_BOUND = 0.5 + 1e-9
 ARC_BOUNDS = ((5.0, 0.51), (0.0, 1.0))
 FEED_BOUND_PCT = 1.0
 FEED_RADIUS = 20.0
-REPEATABLE = settings(
-    derandomize=True,
-    max_examples=40,
-    deadline=None,
-    database=None,
-    suppress_health_check=list(HealthCheck),
-)
+REPEATABLE = repeatable(40)
 
 # Shrunk failures of earlier firmware.
 ONCE_WRONG = (
@@ -69,8 +63,7 @@ ONCE_WRONG = (
 
 def follow_one(rig: Rig, move: Move) -> tuple[Trace, Judgement]:
     """Run one move as a chain of its own and compare it with the reference."""
-    if rig.state.name != "IDLE":
-        rig.recover()
+    rig.ready()
     trace = rig.follow([move], 10.0)
     assert trace.counted == (move.dx & 0xFFFF, move.dz & 0xFFFF)
     return trace, judge_all(trace, [move])[0][1]

@@ -6,7 +6,7 @@
 #ifndef LINK_PROTOCOL_H
 #define LINK_PROTOCOL_H
 
-#define PROTOCOL_VERSION                    1
+#define PROTOCOL_VERSION                    2
 #define FIRMWARE_VERSION_MAJOR              0
 #define FIRMWARE_VERSION_MINOR              1
 #define FIRMWARE_VERSION_PATCH              0
@@ -24,16 +24,18 @@
 #define CRC16_POLYNOMIAL                    0x1021
 #define CRC16_INITIAL                       0xFFFF
 
-/* parts the chip can store */
-#define PART_SLOTS                          8
+/* units of the part store; a part takes one to five, its slot is the first */
+#define PART_SLOTS                          16
+/* bytes of one unit, 64 of them for its header when it is a part's first */
+#define PART_UNIT                           512
 /* no slot; in RUN: the selected part */
 #define SLOT_NONE                           255
 /* bytes of a part image */
-#define PART_IMAGE_MAX                      960
+#define PART_IMAGE_MAX                      2496
 /* bytes of one UPLOAD_DATA or PART_READ piece */
 #define UPLOAD_PIECE_MAX                    32
 /* operations of one part */
-#define OPERATIONS_MAX                      48
+#define OPERATIONS_MAX                      64
 /* characters of a part name */
 #define NAME_LENGTH                         16
 /* characters of the serial number */
@@ -49,6 +51,22 @@
 #define OVERRIDE_MIN                        10
 /* percent, fastest feed override */
 #define OVERRIDE_MAX                        200
+/* characters of a tool name */
+#define TOOL_NAME_LENGTH                    12
+/* characters of a message of PAUSE */
+#define MESSAGE_MAX                         32
+/* most spring passes */
+#define SPRING_MAX                          9
+/* slope of one X step per Z step */
+#define SLOPE_UNIT                          256
+/* slope of an edge that can follow a square shoulder */
+#define SLOPE_ANY                           65535L
+/* bits of a contour's kind that tell what it is */
+#define CONTOUR_KIND                        15
+/* bit of a contour's kind: roughed in facing direction */
+#define CONTOUR_FACING                      128
+/* steps, largest radius of an arc */
+#define RADIUS_MAX                          46000L
 /* progress of a finished run */
 #define PERMILLE_DONE                       1000
 
@@ -62,6 +80,7 @@
 #define STATE_RUNNING                       2
 #define STATE_HOLD                          3
 #define STATE_ALARM                         4
+#define STATE_PAUSE                         5
 
 /* Bits of the flags in STATUS. */
 #define STATUS_FLAG_HOMED                   0x01
@@ -164,9 +183,10 @@
 /* Cut a part. Answered when the chip has checked the part again; STATUS
  * tells the rest. */
 #define COMMAND_RUN                         0x04
-#define RUN_REQUEST_SIZE                    1
+#define RUN_REQUEST_SIZE                    2
 #define RUN_RESPONSE_SIZE                   1
 #define RUN_SLOT_AT                         0
+#define RUN_STEP_AT                         1
 /* Stop the run so that it can go on. OK too when it is already held. */
 #define COMMAND_HOLD                        0x05
 #define HOLD_REQUEST_SIZE                   0
@@ -197,7 +217,7 @@
 #define OVERRIDE_RESPONSE_SIZE              1
 #define OVERRIDE_PERCENT_AT                 0
 /* Start to receive a part image; an upload under way is forgotten.
- * OUT_OF_RANGE: length is not 56 to 960. */
+ * OUT_OF_RANGE: length is not 32 to 2496. */
 #define COMMAND_UPLOAD_BEGIN                0x10
 #define UPLOAD_BEGIN_REQUEST_SIZE           4
 #define UPLOAD_BEGIN_RESPONSE_SIZE          1
@@ -265,91 +285,143 @@
 #define SETTING_SET_VALUE_AT                1
 
 /* Part image: header, then one record per operation. */
-#define PART_IMAGE_FORMAT                   1
-#define PART_IMAGE_HEADER_SIZE              56
+#define PART_IMAGE_FORMAT                   2
+#define PART_IMAGE_HEADER_SIZE              32
 #define PART_IMAGE_FORMAT_AT                0
 #define PART_IMAGE_OPERATION_COUNT_AT       1
 #define PART_IMAGE_FLAGS_AT                 2
 #define PART_IMAGE_RESERVED_AT              3
 #define PART_IMAGE_NAME_AT                  4
 #define PART_IMAGE_STEP_X_NM_AT             20
-#define PART_IMAGE_STEP_Z_NM_AT             24
-#define PART_IMAGE_STOCK_RADIUS_AT          28
-#define PART_IMAGE_STOCK_LENGTH_AT          32
-#define PART_IMAGE_STOCK_FRONT_AT           36
-#define PART_IMAGE_DEPTH_OF_CUT_AT          40
-#define PART_IMAGE_FINISH_ALLOWANCE_AT      42
-#define PART_IMAGE_FEED_AT                  44
-#define PART_IMAGE_FINISH_FEED_AT           48
-#define PART_IMAGE_RETRACT_AT               52
-#define PART_IMAGE_RESERVED_END_AT          54
+#define PART_IMAGE_STEP_Z_NM_AT             22
+#define PART_IMAGE_STOCK_RADIUS_AT          24
+#define PART_IMAGE_STOCK_LENGTH_AT          26
+#define PART_IMAGE_STOCK_FRONT_AT           28
+#define PART_IMAGE_RETRACT_AT               30
 
 /* Every operation record starts with these four bytes. */
 #define OPERATION_TYPE_AT                   0
-#define OPERATION_SIZE_AT                   1
-#define OPERATION_FLAGS_AT                  2
-#define OPERATION_RESERVED_AT               3
+#define OPERATION_KIND_AT                   1
+#define OPERATION_SIZE_AT                   2
+#define OPERATION_HEAD_SIZE                 4
 
-/* Cut everything in front of z, from outside to x_inner. */
-#define OPERATION_FACE                      1
-#define OPERATION_FACE_SIZE                 12
-#define OPERATION_FACE_Z_AT                 4
-#define OPERATION_FACE_X_INNER_AT           8
+/* Another tool for what follows; kind is its number, from 0. Not the first:
+ * the lathe parks and waits for RUN. */
+#define OPERATION_TOOL                      1
+#define OPERATION_TOOL_SIZE                 30
+#define OPERATION_TOOL_NAME_AT              4
+#define OPERATION_TOOL_NOSE_AT              16
+#define OPERATION_TOOL_BELOW_AT             18
+#define OPERATION_TOOL_WIDTH_AT             20
+#define OPERATION_TOOL_BACK_AT              22
+#define OPERATION_TOOL_FRONT_AT             24
+#define OPERATION_TOOL_OFFSET_X_AT          26
+#define OPERATION_TOOL_OFFSET_Z_AT          28
 
-/* Cut everything between z_start and z_end that is larger than x. */
-#define OPERATION_CYLINDER                  2
-#define OPERATION_CYLINDER_SIZE             16
-#define OPERATION_CYLINDER_Z_START_AT       4
-#define OPERATION_CYLINDER_Z_END_AT         8
-#define OPERATION_CYLINDER_X_AT             12
+/* Cutting data for what follows; kind is the number of spring passes, 0 to
+ * 9. */
+#define OPERATION_CUT                       2
+#define OPERATION_CUT_SIZE                  20
+#define OPERATION_CUT_DEPTH_OF_CUT_AT       4
+#define OPERATION_CUT_FINISH_ALLOWANCE_AT   6
+#define OPERATION_CUT_FEED_AT               8
+#define OPERATION_CUT_FINISH_FEED_AT        12
+#define OPERATION_CUT_SPINDLE_AT            16
+#define OPERATION_CUT_PECK_AT               18
+
+/* Park and wait for RUN; kind 0 a message, 1 a drill to be used by hand. */
+#define OPERATION_PAUSE                     3
+#define OPERATION_PAUSE_MAX                 36
+#define OPERATION_PAUSE_MESSAGE_AT          4
+
+/* Rough and finish a contour. kind: 0 face, 1 cylinder, 2 cone, 3 arc, 4
+ * profile; + 128 to rough in facing direction. segments: kind u8 (0 line, 1
+ * convex arc, 2 concave arc), dx i16, dz i16, and for an arc the centre
+ * from its start, cx i24, cz i24, in 1/256 step. */
+#define OPERATION_CONTOUR                   4
+#define OPERATION_CONTOUR_MAX               2408
+#define OPERATION_CONTOUR_Z_AT              4
+#define OPERATION_CONTOUR_X_AT              6
+#define OPERATION_CONTOUR_SEGMENTS_AT       8
+
+/* Cut straight in with a tool of a width. kind: 0 groove, 1 part off. z is
+ * that of the tool's corner on the chuck's side. */
+#define OPERATION_PLUNGE                    5
+#define OPERATION_PLUNGE_SIZE               10
+#define OPERATION_PLUNGE_Z_HIGH_AT          4
+#define OPERATION_PLUNGE_Z_LOW_AT           6
+#define OPERATION_PLUNGE_X_AT               8
 
 /* Why a part is refused. The first broken rule is answered. First for the
  * whole part (operation 0): LENGTH, FORMAT, NAME, STEP_SIZE, STOCK,
- * OPERATION_COUNT, DEPTH_OF_CUT, ALLOWANCE, FEED, RETRACT, OUTSIDE_TRAVEL.
- * Then for each operation in turn: LENGTH, OPERATION_TYPE, OPERATION_SIZE,
- * FORMAT, OUTSIDE_STOCK, OUTSIDE_TRAVEL, EMPTY_CUT, BLOCKED. After the last
- * one (operation 0): LENGTH. */
-/* format is not 1, or a byte or flag that must be 0 is not */
+ * OPERATION_COUNT, RETRACT, OUTSIDE_TRAVEL. Then for each operation in
+ * turn: LENGTH, OPERATION_TYPE, ORDER, OPERATION_SIZE, FORMAT, TOOL,
+ * OUTSIDE_TRAVEL, DEPTH_OF_CUT, ALLOWANCE, FEED, SPINDLE, OUTSIDE_STOCK,
+ * DIRECTION, EMPTY_CUT, ARC, BACK_EDGE, FRONT_EDGE, BLOCKED. After the last
+ * one (operation 0): OPERATION_COUNT. */
+/* format is not 2, or a byte, flag or kind has a value that is not defined */
 #define REFUSAL_FORMAT                      1
-/* shorter than its header, longer than 960 bytes, fewer than 12 bytes left
- * for a record, a record that reaches behind the end, or bytes left after
- * the last record */
+/* shorter than its header, longer than 2496 bytes, fewer than 4 bytes left
+ * for a record, or a record that is shorter than 4 bytes or reaches behind
+ * the end */
 #define REFUSAL_LENGTH                      2
 /* empty, a character other than a-z 0-9 -, or characters after the first
  * zero */
 #define REFUSAL_NAME                        3
 /* step_x_nm or step_z_nm differs from the setting */
 #define REFUSAL_STEP_SIZE                   4
-/* stock_radius or stock_length is not 1 to 32000, or stock_front is not 0
- * to 32000 */
+/* stock_radius or stock_length is 0 or more than 32000, or stock_front is
+ * more than 32000 - stock_length */
 #define REFUSAL_STOCK                       5
 /* depth_of_cut is 0 or more than stock_radius */
 #define REFUSAL_DEPTH_OF_CUT                6
 /* feed or finish_feed is below 1024 or above 256 * max_rate */
 #define REFUSAL_FEED                        7
-/* retract is 0 */
+/* retract is 0 or more than 32000 */
 #define REFUSAL_RETRACT                     8
-/* operation_count is not 1 to 48 */
+/* operation_count is not 1 to 64, or not the number of PAUSE, CONTOUR and
+ * PLUNGE records */
 #define REFUSAL_OPERATION_COUNT             9
 /* unknown type */
 #define REFUSAL_OPERATION_TYPE              10
-/* size is not that of its type */
+/* size is not that of its type; PAUSE: not 4 to 36; CONTOUR: no segment,
+ * one of unknown kind, or bytes left over */
 #define REFUSAL_OPERATION_SIZE              11
-/* x below 0 or above stock_radius, z_start above stock_front, or z or z_end
- * below retract - stock_length */
+/* x below -below of the tool or above stock_radius, z of the start above
+ * stock_front + retract, or a z below retract - stock_length; an arc's
+ * highest and lowest point count too. PLUNGE: also z_high + width above
+ * stock_front + retract */
 #define REFUSAL_OUTSIDE_STOCK               12
 /* whole part: zero_x + stock_radius + retract above 0, or zero_z +
- * stock_front + retract above 0; operation: zero_x + x below -travel_x, or
- * zero_z + z (z_end) below -travel_z */
+ * stock_front + 2 * retract above 0, and the same with the offset of every
+ * tool; operation: zero_x + offset + x below -travel_x, or zero_z + offset
+ * + z below -travel_z */
 #define REFUSAL_OUTSIDE_TRAVEL              13
-/* cylinder: z_start not above z_end, or x equal to stock_radius; face: z
- * not below stock_front, or x_inner equal to stock_radius */
+/* a segment without length; a contour along Z that ends where it starts in
+ * z, or nowhere comes below stock_radius; a facing one that ends at or in
+ * front of stock_front; PLUNGE: x at or above stock_radius */
 #define REFUSAL_EMPTY_CUT                   14
-/* cylinder: z_start is below stock_front and no earlier operation with
- * z_end (z) at or below this z_start has an x at or below this x */
+/* contour along Z, tool that cannot fall squarely: one step in front of its
+ * start something larger than its first x is left */
 #define REFUSAL_BLOCKED                     15
 /* finish_allowance is more than depth_of_cut */
 #define REFUSAL_ALLOWANCE                   16
+/* the first record is not TOOL, or the second not CUT */
+#define REFUSAL_ORDER                       17
+/* CONTOUR with a tool of a width, or PLUNGE with one without */
+#define REFUSAL_TOOL                        18
+/* the circle through the start misses the end by more than a step, its
+ * radius is below 2 or above 46000, or an end lies on the wrong side of its
+ * centre (convex: x below it; concave: above it) */
+#define REFUSAL_ARC                         19
+/* a segment falls more steeply than back of the tool */
+#define REFUSAL_BACK_EDGE                   20
+/* a segment rises more steeply than front of the tool */
+#define REFUSAL_FRONT_EDGE                  21
+/* dz above 0, or x gets smaller in a contour roughed in facing direction */
+#define REFUSAL_DIRECTION                   22
+/* spindle is neither 0 nor between the settings spindle_min and spindle_max */
+#define REFUSAL_SPINDLE                     23
 
 /* Settings by id. */
 #define SETTING_STEP_X_NM                   0
@@ -378,7 +450,9 @@
 #define SETTING_START_RATE_Z                23
 #define SETTING_IDLE_MS                     24
 #define SETTING_PULSE_US                    25
-#define SETTING_COUNT                       26
+#define SETTING_SPINDLE_MIN                 26
+#define SETTING_SPINDLE_MAX                 27
+#define SETTING_COUNT                       28
 
 /* SETTINGS(X): X(id, name, default, min, max) for each, in order of id. */
 #define SETTINGS(X)                                                          \
@@ -407,6 +481,8 @@
     X(22, START_RATE_X, 400, 20, 4000)                                       \
     X(23, START_RATE_Z, 400, 20, 4000)                                       \
     X(24, IDLE_MS, (-1), (-1), 32000)                                        \
-    X(25, PULSE_US, 5, 5, 60)
+    X(25, PULSE_US, 5, 5, 60)                                                \
+    X(26, SPINDLE_MIN, 100, 0, 32000)                                        \
+    X(27, SPINDLE_MAX, 3800, 1, 32000)
 
 #endif

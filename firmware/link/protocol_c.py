@@ -113,15 +113,16 @@ def image(model: Model) -> list[str]:
         "",
         *comment("Every operation record starts with these four bytes."),
         define("OPERATION_TYPE_AT", 0),
-        define("OPERATION_SIZE_AT", 1),
-        define("OPERATION_FLAGS_AT", 2),
-        define("OPERATION_RESERVED_AT", 3),
+        define("OPERATION_KIND_AT", 1),
+        define("OPERATION_SIZE_AT", 2),
+        define("OPERATION_HEAD_SIZE", RECORD_HEAD),
     ]
     for name, part in model.operations.items():
         upper = f"OPERATION_{name.upper()}"
         entry = model.raw["operation"][name]
         lines += ["", *comment(entry["meaning"]), define(upper, entry["type"])]
-        lines.append(define(f"{upper}_SIZE", part.size + RECORD_HEAD))
+        suffix = "MAX" if part.is_open else "SIZE"
+        lines.append(define(f"{upper}_{suffix}", part.size + RECORD_HEAD))
         lines += offsets(upper, part.fields)
     return lines
 

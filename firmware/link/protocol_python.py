@@ -3,7 +3,7 @@
 
 import textwrap
 
-from protocol_model import NOTICE, RECORD_HEAD, Layout, Model
+from protocol_model import NOTICE, RECORD_HEAD_CODE, Layout, Model
 
 WIDTH = 100
 CLASSES = {
@@ -94,11 +94,20 @@ def struct(part: Layout, before: str = "") -> str:
     return '"<' + before + "".join(field.struct_code for field in part.fields) + '"'
 
 
-def record(name: str, purpose: str, part: Layout) -> list[str]:
-    """A NamedTuple for the closed fields of a layout."""
-    lines = ["", "", f"class {name}(NamedTuple):", f'    """{purpose}"""', ""]
+def record(
+    name: str, purpose: str, part: Layout, head: tuple[str, ...] = ()
+) -> list[str]:
+    """A NamedTuple for a layout, after the numbers of `head`."""
+    first, _, rest = purpose.partition(". ")
+    lines = ["", "", f"class {name}(NamedTuple):"]
+    if rest:
+        wrapped = textwrap.wrap(rest, WIDTH - 4)
+        lines += [f'    """{first}.', "", *(f"    {line}" for line in wrapped), '    """', ""]
+    else:
+        lines += [f'    """{purpose}"""', ""]
+    lines += [f"    {field}: int" for field in head]
     for field in part.fields:
-        lines += [f"    {field.name}: {'bytes' if field.is_text else 'int'}"]
+        lines += [f"    {field.name}: {'bytes' if field.is_text or field.is_open else 'int'}"]
     return lines
 
 
@@ -118,12 +127,12 @@ def layouts(model: Model) -> list[str]:
         "#: Header of a part image.",
         f"IMAGE_HEADER = Struct({struct(model.image_header)})",
         f"IMAGE_FORMAT = {model.raw['image']['format']}",
-        "#: Operation records: type, size, flags, reserved, then the fields of the type.",
+        "#: Records: type, kind, size of the whole, then the closed fields of the type.",
         "OPERATION_RECORDS = {",
     ]
     for name, part in model.operations.items():
         lines.append(
-            f"    OperationType.{name.upper()}: Struct({struct(part, 'B' * RECORD_HEAD)}),"
+            f"    OperationType.{name.upper()}: Struct({struct(part, RECORD_HEAD_CODE)}),"
         )
     lines.append("}")
     for command in model.commands:
@@ -133,7 +142,7 @@ def layouts(model: Model) -> list[str]:
     lines += record("ImageHeader", "Header of a part image.", model.image_header)
     for name, part in model.operations.items():
         purpose = model.raw["operation"][name]["meaning"]
-        lines += record(f"{camel(name)}Record", purpose, part)
+        lines += record(f"{camel(name)}Record", purpose, part, head=("kind",))
     return lines
 
 

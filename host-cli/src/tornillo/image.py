@@ -2,25 +2,56 @@
 """The part image: the bytes of a part as the chip stores them, and the steps in them."""
 
 import struct
+from collections.abc import Iterator
 from dataclasses import dataclass
+from enum import IntEnum
+from typing import NamedTuple
 
 from tornillo.protocol import (
     IMAGE_HEADER,
+    MESSAGE_MAX,
     OPERATION_RECORDS,
-    CylinderRecord,
-    FaceRecord,
+    ContourRecord,
+    CutRecord,
     ImageHeader,
     OperationType,
+    PauseRecord,
+    PlungeRecord,
     Refusal,
+    ToolRecord,
 )
 
 RECORD_HEAD_SIZE = 4
-Operation = FaceRecord | CylinderRecord
-RECORDS: dict[OperationType, type[FaceRecord] | type[CylinderRecord]] = {
-    OperationType.FACE: FaceRecord,
-    OperationType.CYLINDER: CylinderRecord,
+CENTRE_UNIT = 256  # of one step, in the centres of arcs
+Record = ToolRecord | CutRecord | PauseRecord | ContourRecord | PlungeRecord
+RECORDS: dict[OperationType, type[Record]] = {
+    OperationType.TOOL: ToolRecord,
+    OperationType.CUT: CutRecord,
+    OperationType.PAUSE: PauseRecord,
+    OperationType.CONTOUR: ContourRecord,
+    OperationType.PLUNGE: PlungeRecord,
 }
-SMALLEST_RECORD = min(record.size for record in OPERATION_RECORDS.values())
+OPEN_TYPES = (OperationType.PAUSE, OperationType.CONTOUR)
+OPERATIONS = (PauseRecord, ContourRecord, PlungeRecord)
+_SEGMENT_HEAD = struct.Struct("<Bhh")
+
+
+class SegmentKind(IntEnum):
+    """First byte of a segment of a contour."""
+
+    LINE = 0
+    CONVEX = 1
+    CONCAVE = 2
+
+
+class Segment(NamedTuple):
+    """One line or arc; (cz, cx) is the centre from its start in 1/256 step, 0 for a line."""
+
+    kind: SegmentKind
+    dz: int
+    dx: int
+    cz: int = 0
+    cx: int = 0
 
 
 class ImageError(ValueError):
@@ -33,17 +64,59 @@ class ImageError(ValueError):
         self.operation = operation
 
 
+def pack_segments(segments: tuple[Segment, ...]) -> bytes:
+    """The bytes of a contour's segments.
+
+    Raises struct.error or OverflowError when a number does not fit its field.
+    """
+    data = bytearray()
+    for segment in segments:
+        data += _SEGMENT_HEAD.pack(segment.kind, segment.dx, segment.dz)
+        if segment.kind != SegmentKind.LINE:
+            data += segment.cx.to_bytes(3, "little", signed=True)
+            data += segment.cz.to_bytes(3, "little", signed=True)
+    return bytes(data)
+
+
+def unpack_segments(data: bytes) -> Iterator[Segment]:
+    """The segments in the bytes of a contour.
+
+    Raises ValueError at the first one that is cut off or of unknown kind.
+    """
+    at = 0
+    while at < len(data):
+        if len(data) < at + _SEGMENT_HEAD.size:
+            raise ValueError("a segment is cut off")
+        code, dx, dz = _SEGMENT_HEAD.unpack_from(data, at)
+        kind = SegmentKind(code)
+        at += _SEGMENT_HEAD.size
+        if kind is SegmentKind.LINE:
+            yield Segment(kind, dz, dx)
+            continue
+        if len(data) < at + 6:
+            raise ValueError("an arc is cut off")
+        cx = int.from_bytes(data[at : at + 3], "little", signed=True)
+        cz = int.from_bytes(data[at + 3 : at + 6], "little", signed=True)
+        at += 6
+        yield Segment(kind, dz, dx, cz, cx)
+
+
 @dataclass(frozen=True)
 class PartImage:
     """A part in steps."""
 
     header: ImageHeader
-    operations: tuple[Operation, ...]
+    records: tuple[Record, ...]
 
     @property
     def name(self) -> str:
         """The name of the part."""
         return self.header.name.rstrip(b"\0").decode("ascii", "replace")
+
+    @property
+    def operations(self) -> tuple[PauseRecord | ContourRecord | PlungeRecord, ...]:
+        """The records that are counted: what a person calls an operation."""
+        return tuple(record for record in self.records if isinstance(record, OPERATIONS))
 
     def pack(self) -> bytes:
         """The bytes to upload.
@@ -51,12 +124,7 @@ class PartImage:
         Raises struct.error when a number does not fit its field; `tornillo.rules` says so
         first.
         """
-        data = bytearray(IMAGE_HEADER.pack(*self.header))
-        for operation in self.operations:
-            kind = operation_type(operation)
-            record = OPERATION_RECORDS[kind]
-            data += record.pack(kind, record.size, 0, 0, *operation)
-        return bytes(data)
+        return IMAGE_HEADER.pack(*self.header) + b"".join(map(pack_record, self.records))
 
     @classmethod
     def unpack(cls, data: bytes) -> "PartImage":
@@ -65,20 +133,35 @@ class PartImage:
         Raises ImageError.
         """
         header = unpack_header(data)
-        operations = []
+        records: list[Record] = []
         at = IMAGE_HEADER.size
-        for position in range(1, header.operation_count + 1):
-            operation = unpack_operation(data, at, position)
-            operations.append(operation)
-            at += OPERATION_RECORDS[operation_type(operation)].size
-        if at != len(data):
-            raise ImageError(Refusal.LENGTH, 0)
-        return cls(header, tuple(operations))
+        count = 0
+        while at < len(data):
+            record, size = unpack_record(data, at, count + 1)
+            records.append(record)
+            count += isinstance(record, OPERATIONS)
+            at += size
+        if count != header.operation_count:
+            raise ImageError(Refusal.OPERATION_COUNT, 0)
+        return cls(header, tuple(records))
 
 
-def operation_type(operation: Operation) -> OperationType:
-    """The type byte of an operation."""
-    return next(kind for kind, record in RECORDS.items() if isinstance(operation, record))
+def record_type(record: Record) -> OperationType:
+    """The type byte of a record."""
+    return next(kind for kind, cls in RECORDS.items() if isinstance(record, cls))
+
+
+def pack_record(record: Record) -> bytes:
+    """The bytes of one record."""
+    kind = record_type(record)
+    layout = OPERATION_RECORDS[kind]
+    fields = tuple(record)
+    tail = b""
+    if kind in OPEN_TYPES:
+        *closed, tail = fields
+        fields = tuple(closed)
+    first, *rest = fields
+    return layout.pack(kind, first, layout.size + len(tail), *rest) + tail
 
 
 def unpack_header(data: bytes) -> ImageHeader:
@@ -89,21 +172,23 @@ def unpack_header(data: bytes) -> ImageHeader:
         raise ImageError(Refusal.LENGTH, 0) from error
 
 
-def unpack_operation(data: bytes, at: int, position: int) -> Operation:
-    """The record at offset `at`, number `position` of the part; raises ImageError."""
-    if len(data) < at + SMALLEST_RECORD:
+def unpack_record(data: bytes, at: int, position: int) -> tuple[Record, int]:
+    """The record at offset `at` and its size; raises ImageError for operation `position`."""
+    left = len(data) - at
+    if left < RECORD_HEAD_SIZE:
         raise ImageError(Refusal.LENGTH, position)
-    code, size, flags, reserved = data[at : at + RECORD_HEAD_SIZE]
+    code, kind, size = struct.unpack_from("<BBH", data, at)
+    if not RECORD_HEAD_SIZE <= size <= left:
+        raise ImageError(Refusal.LENGTH, position)
     try:
-        kind = OperationType(code)
+        type_ = OperationType(code)
     except ValueError as error:
         raise ImageError(Refusal.OPERATION_TYPE, position) from error
-    record = OPERATION_RECORDS[kind]
-    if size != record.size:
+    layout = OPERATION_RECORDS[type_]
+    longest = layout.size + (MESSAGE_MAX if type_ is OperationType.PAUSE else left)
+    if size < layout.size or size > (longest if type_ in OPEN_TYPES else layout.size):
         raise ImageError(Refusal.OPERATION_SIZE, position)
-    if len(data) < at + size:
-        raise ImageError(Refusal.LENGTH, position)
-    if flags or reserved:
-        raise ImageError(Refusal.FORMAT, position)
-    fields = record.unpack_from(data, at)[RECORD_HEAD_SIZE:]
-    return RECORDS[kind](*fields)
+    fields = (kind, *layout.unpack_from(data, at)[3:])
+    if type_ in OPEN_TYPES:
+        fields = (*fields, data[at + layout.size : at + size])
+    return RECORDS[type_](*fields), size

@@ -8,7 +8,7 @@ from enum import IntEnum, IntFlag
 from struct import Struct
 from typing import NamedTuple
 
-PROTOCOL_VERSION = 1
+PROTOCOL_VERSION = 2
 FIRMWARE_VERSION = "0.1.0"
 USB_VENDOR_ID = 0x1209
 USB_PRODUCT_ID = 0x0001
@@ -19,16 +19,18 @@ FRAME_RESPONSE_BIT = 0x80
 CRC16_POLYNOMIAL = 0x1021
 CRC16_INITIAL = 0xFFFF
 CRC16_CHECK = 0x29B1
-#: parts the chip can store
-PART_SLOTS = 8
+#: units of the part store; a part takes one to five, its slot is the first
+PART_SLOTS = 16
+#: bytes of one unit, 64 of them for its header when it is a part's first
+PART_UNIT = 512
 #: no slot; in RUN: the selected part
 SLOT_NONE = 255
 #: bytes of a part image
-PART_IMAGE_MAX = 960
+PART_IMAGE_MAX = 2496
 #: bytes of one UPLOAD_DATA or PART_READ piece
 UPLOAD_PIECE_MAX = 32
 #: operations of one part
-OPERATIONS_MAX = 48
+OPERATIONS_MAX = 64
 #: characters of a part name
 NAME_LENGTH = 16
 #: characters of the serial number
@@ -43,6 +45,22 @@ FEED_UNIT = 256
 OVERRIDE_MIN = 10
 #: percent, fastest feed override
 OVERRIDE_MAX = 200
+#: characters of a tool name
+TOOL_NAME_LENGTH = 12
+#: characters of a message of PAUSE
+MESSAGE_MAX = 32
+#: most spring passes
+SPRING_MAX = 9
+#: slope of one X step per Z step
+SLOPE_UNIT = 256
+#: slope of an edge that can follow a square shoulder
+SLOPE_ANY = 65535
+#: bits of a contour's kind that tell what it is
+CONTOUR_KIND = 15
+#: bit of a contour's kind: roughed in facing direction
+CONTOUR_FACING = 128
+#: steps, largest radius of an arc
+RADIUS_MAX = 46000
 #: progress of a finished run
 PERMILLE_DONE = 1000
 
@@ -86,6 +104,7 @@ class State(IntEnum):
     RUNNING = 2
     HOLD = 3
     ALARM = 4
+    PAUSE = 5
 
 
 class StatusFlag(IntFlag):
@@ -169,13 +188,23 @@ class Refusal(IntEnum):
     EMPTY_CUT = 14
     BLOCKED = 15
     ALLOWANCE = 16
+    ORDER = 17
+    TOOL = 18
+    ARC = 19
+    BACK_EDGE = 20
+    FRONT_EDGE = 21
+    DIRECTION = 22
+    SPINDLE = 23
 
 
 class OperationType(IntEnum):
     """First byte of an operation record."""
 
-    FACE = 1
-    CYLINDER = 2
+    TOOL = 1
+    CUT = 2
+    PAUSE = 3
+    CONTOUR = 4
+    PLUNGE = 5
 
 
 class SettingId(IntEnum):
@@ -207,6 +236,8 @@ class SettingId(IntEnum):
     START_RATE_Z = 23
     IDLE_MS = 24
     PULSE_US = 25
+    SPINDLE_MIN = 26
+    SPINDLE_MAX = 27
 
 
 #: Request payloads; UPLOAD_DATA is followed by its bytes.
@@ -214,7 +245,7 @@ REQUESTS = {
     Command.HELLO: Struct("<"),
     Command.STATUS: Struct("<"),
     Command.HOME: Struct("<"),
-    Command.RUN: Struct("<B"),
+    Command.RUN: Struct("<BB"),
     Command.HOLD: Struct("<"),
     Command.RESUME: Struct("<"),
     Command.STOP: Struct("<"),
@@ -254,12 +285,15 @@ RESPONSES = {
     Command.SETTING_SET: Struct("<"),
 }
 #: Header of a part image.
-IMAGE_HEADER = Struct("<BBBB16sIIIIiHHIIHH")
-IMAGE_FORMAT = 1
-#: Operation records: type, size, flags, reserved, then the fields of the type.
+IMAGE_HEADER = Struct("<BBBB16sHHHHHH")
+IMAGE_FORMAT = 2
+#: Records: type, kind, size of the whole, then the closed fields of the type.
 OPERATION_RECORDS = {
-    OperationType.FACE: Struct("<BBBBii"),
-    OperationType.CYLINDER: Struct("<BBBBiii"),
+    OperationType.TOOL: Struct("<BBH12sHHHHHhh"),
+    OperationType.CUT: Struct("<BBHHHIIHH"),
+    OperationType.PAUSE: Struct("<BBH"),
+    OperationType.CONTOUR: Struct("<BBHhh"),
+    OperationType.PLUNGE: Struct("<BBHhhh"),
 }
 
 
@@ -345,26 +379,68 @@ class ImageHeader(NamedTuple):
     stock_radius: int
     stock_length: int
     stock_front: int
+    retract: int
+
+
+class ToolRecord(NamedTuple):
+    """Another tool for what follows; kind is its number, from 0.
+
+    Not the first: the lathe parks and waits for RUN.
+    """
+
+    kind: int
+    name: bytes
+    nose: int
+    below: int
+    width: int
+    back: int
+    front: int
+    offset_x: int
+    offset_z: int
+
+
+class CutRecord(NamedTuple):
+    """Cutting data for what follows; kind is the number of spring passes, 0 to 9."""
+
+    kind: int
     depth_of_cut: int
     finish_allowance: int
     feed: int
     finish_feed: int
-    retract: int
-    reserved_end: int
+    spindle: int
+    peck: int
 
 
-class FaceRecord(NamedTuple):
-    """Cut everything in front of z, from outside to x_inner."""
+class PauseRecord(NamedTuple):
+    """Park and wait for RUN; kind 0 a message, 1 a drill to be used by hand."""
 
+    kind: int
+    message: bytes
+
+
+class ContourRecord(NamedTuple):
+    """Rough and finish a contour.
+
+    kind: 0 face, 1 cylinder, 2 cone, 3 arc, 4 profile; + 128 to rough in facing direction.
+    segments: kind u8 (0 line, 1 convex arc, 2 concave arc), dx i16, dz i16, and for an arc the
+    centre from its start, cx i24, cz i24, in 1/256 step.
+    """
+
+    kind: int
     z: int
-    x_inner: int
+    x: int
+    segments: bytes
 
 
-class CylinderRecord(NamedTuple):
-    """Cut everything between z_start and z_end that is larger than x."""
+class PlungeRecord(NamedTuple):
+    """Cut straight in with a tool of a width.
 
-    z_start: int
-    z_end: int
+    kind: 0 groove, 1 part off. z is that of the tool's corner on the chuck's side.
+    """
+
+    kind: int
+    z_high: int
+    z_low: int
     x: int
 
 
@@ -406,4 +482,6 @@ SETTINGS = (
     Setting(SettingId.START_RATE_Z, 400, 20, 4000, "step/s", "Z starts, stops and turns at it"),
     Setting(SettingId.IDLE_MS, -1, -1, 32000, "ms", "coils off so long after a move; -1 never"),
     Setting(SettingId.PULSE_US, 5, 5, 60, "us", "step pulse in coil mode 3"),
+    Setting(SettingId.SPINDLE_MIN, 100, 0, 32000, "rev/min", "slowest spindle speed"),
+    Setting(SettingId.SPINDLE_MAX, 3800, 1, 32000, "rev/min", "fastest spindle speed"),
 )

@@ -167,12 +167,12 @@ REFUSAL_TEXTS = {
         "give a feed inside the machine's range",
     ),
     Refusal.RETRACT: Explanation(
-        "the retract is too small",
+        "the retract is too small or too large",
         "give a retract of at least one step",
     ),
     Refusal.OPERATION_COUNT: Explanation(
         "the number of operations is wrong",
-        "give 1 to 48 operations",
+        "give 1 to 64 operations",
     ),
     Refusal.OPERATION_TYPE: Explanation(
         "the firmware does not know this type of operation",
@@ -196,10 +196,41 @@ REFUSAL_TEXTS = {
     ),
     Refusal.BLOCKED: Explanation(
         "material in front of the operation keeps the tool out",
-        "cut the part in front first, or start at the front face",
+        "cut the part in front first, start at the front face, or use a tool that can plunge",
     ),
     Refusal.ALLOWANCE: Explanation(
         "the finish allowance is too large",
         "leave at most one depth of cut for finishing",
+    ),
+    Refusal.ORDER: Explanation(
+        "the tool or its cutting data are missing",
+        "use the tornillo version that belongs to this firmware",
+    ),
+    Refusal.TOOL: Explanation(
+        "this tool cannot make such a cut",
+        "turn with a turning tool; cut grooves and part off with a tool that has a `width`",
+    ),
+    Refusal.ARC: Explanation(
+        "there is no such arc",
+        (
+            "check the ends and the radius: it is at least half the distance of the ends, and the "
+            "arc never runs back"
+        ),
+    ),
+    Refusal.BACK_EDGE: Explanation(
+        "the back edge of the tool would cut into the work",
+        "make it less steep, or use a tool with more back clearance",
+    ),
+    Refusal.FRONT_EDGE: Explanation(
+        "the front edge of the tool would cut into the work",
+        "make it less steep, or use a tool with more front clearance",
+    ),
+    Refusal.DIRECTION: Explanation(
+        "the contour runs the wrong way",
+        "order the points from the free end towards the chuck",
+    ),
+    Refusal.SPINDLE: Explanation(
+        "the spindle cannot turn at that speed",
+        "give a spindle speed inside the machine's range",
     ),
 }

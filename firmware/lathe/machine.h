@@ -39,7 +39,8 @@ void machine_init(uint8_t settings_good);
 void machine_poll(void);
 
 uint8_t machine_home(void);
-uint8_t machine_run(uint8_t slot);
+/* step: pause after every operation. */
+uint8_t machine_run(uint8_t slot, uint8_t step);
 uint8_t machine_hold(void);
 uint8_t machine_resume(void);
 uint8_t machine_stop(void);
@@ -56,6 +57,9 @@ uint8_t machine_zero(uint8_t axis, int16_t value);
 
 /* Takes settings that motion depends on into use. */
 void machine_apply_settings(void);
+
+/* A part has been begun and is not complete. */
+uint8_t machine_running(void);
 
 /* Progress of the run, 0..1000. */
 uint16_t machine_permille(void);

@@ -3,6 +3,7 @@
 
 #include "link/commands.h"
 #include "lathe/machine.h"    /* state, actions */
+#include "lathe/part.h"
 #include "lathe/part_check.h" /* upload, max rate */
 #include "lathe/passes.h"     /* progress */
 #include "link/frame.h"       /* request, response */
@@ -140,8 +141,7 @@ static uint8_t status_flags(void)
 
 static uint8_t status(void)
 {
-    uint8_t running =
-        machine_state == STATE_RUNNING || machine_state == STATE_HOLD;
+    uint8_t running = machine_running();
 
     frame_response[STATUS_RESPONSE_STATE_AT] = machine_state;
     frame_response[STATUS_RESPONSE_ALARM_AT] = machine_alarm;
@@ -156,7 +156,7 @@ static uint8_t status(void)
     frame_response[STATUS_RESPONSE_OPERATION_AT] =
         running ? passes_operation() : 0;
     frame_response[STATUS_RESPONSE_OPERATIONS_AT] =
-        running ? passes_operations : 0;
+        running ? part_operations : 0;
     frame_response[STATUS_RESPONSE_PASS_NUMBER_AT] =
         running ? passes_pass() : 0;
     frame_response[STATUS_RESPONSE_PASSES_AT] = running ? passes_passes() : 0;
@@ -331,7 +331,8 @@ uint8_t commands_execute(void)
         error = machine_home();
         break;
     case COMMAND_RUN:
-        error = machine_run(frame_payload[RUN_SLOT_AT]);
+        error = machine_run(frame_payload[RUN_SLOT_AT],
+                            frame_payload[RUN_STEP_AT]);
         break;
     case COMMAND_HOLD:
         error = machine_hold();

@@ -73,13 +73,6 @@ void path_cancel(void)
     ended = 1;
 }
 
-uint32_t path_steps_made(void)
-{
-    uint8_t fill = stream_fill();
-
-    return entries_steps > fill ? entries_steps - fill : 0;
-}
-
 void path_set_home(uint8_t axis)
 {
     if (axis == AXIS_X) {
@@ -179,7 +172,7 @@ static uint8_t next_segment(void)
     return 1;
 }
 
-void path_poll(void)
+void path_make(void)
 {
     uint8_t budget = BATCH;
     uint8_t room;
@@ -188,7 +181,6 @@ void path_poll(void)
     if (ended) {
         return;
     }
-    accept();
     if (!started && !complete && after(path_head) != ramp_segment) {
         return; /* look ahead as far as possible before the first step */
     }
@@ -216,5 +208,13 @@ void path_poll(void)
         stream_start();
     } else if (started && !ended && stream_fill() < stream_low) {
         stream_low = stream_fill();
+    }
+}
+
+void path_poll(void)
+{
+    if (!ended) {
+        accept();
+        path_make();
     }
 }

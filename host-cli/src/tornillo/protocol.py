@@ -19,10 +19,10 @@ FRAME_RESPONSE_BIT = 0x80
 CRC16_POLYNOMIAL = 0x1021
 CRC16_INITIAL = 0xFFFF
 CRC16_CHECK = 0x29B1
-#: units of the part store; a part takes one to five, its slot is the first
-PART_SLOTS = 16
+#: units of the part store; a part takes one to ten, its slot is the first
+PART_SLOTS = 12
 #: bytes of one unit, 64 of them for its header when it is a part's first
-PART_UNIT = 512
+PART_UNIT = 256
 #: no slot; in RUN: the selected part
 SLOT_NONE = 255
 #: bytes of a part image
@@ -37,10 +37,10 @@ NAME_LENGTH = 16
 SERIAL_LENGTH = 8
 #: steps, largest length or radius in a part image: the chip counts in 16 bits
 POSITION_MAX = 32000
-#: 1/256 step/s, slowest feed: 4 step/s
-FEED_MIN = 1024
+#: 1/8 step/s, slowest feed: 4 step/s
+FEED_MIN = 32
 #: feed units of one step/s
-FEED_UNIT = 256
+FEED_UNIT = 8
 #: percent, slowest feed override
 OVERRIDE_MIN = 10
 #: percent, fastest feed override
@@ -59,8 +59,14 @@ SLOPE_ANY = 65535
 CONTOUR_KIND = 15
 #: bit of a contour's kind: roughed in facing direction
 CONTOUR_FACING = 128
+#: steps, largest retract: sums with it stay below 16 bits
+RETRACT_MAX = 8000
+#: steps, most raw material in front of z = 0
+STOCK_FRONT_MAX = 8000
+#: steps, widest grooving tool
+WIDTH_MAX = 8000
 #: steps, largest radius of an arc
-RADIUS_MAX = 46000
+RADIUS_MAX = 32000
 #: progress of a finished run
 PERMILLE_DONE = 1000
 
@@ -290,7 +296,7 @@ IMAGE_FORMAT = 2
 #: Records: type, kind, size of the whole, then the closed fields of the type.
 OPERATION_RECORDS = {
     OperationType.TOOL: Struct("<BBH12sHHHHHhh"),
-    OperationType.CUT: Struct("<BBHHHIIHH"),
+    OperationType.CUT: Struct("<BBHHHHHHH"),
     OperationType.PAUSE: Struct("<BBH"),
     OperationType.CONTOUR: Struct("<BBHhh"),
     OperationType.PLUNGE: Struct("<BBHhhh"),

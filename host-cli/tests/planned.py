@@ -96,7 +96,8 @@ def random_segments(
         if segment is not None and inside(segment, x, low, high) and (falling or rises(segment)):
             found.append(segment)
             x += segment.dx
-    return found or [line(-20, 0)]
+    # A contour that ends in a fall leaves the tool in a notch of no width.
+    return [*found, line(-dice.randint(1, 20), 0)]
 
 
 def inside(segment: Segment, x: int, low: int, high: int) -> bool:
@@ -133,7 +134,11 @@ def random_part(seed: int) -> PartImage:
             records.append(face(-dice.randint(0, 10), dice.randint(0, radius - 1), radius))
             continue
         segments = random_segments(dice, x, 0, radius, falling=not facing)
-        if sum(segment.dz for segment in segments) == 0:
-            segments.append(line(-15, 0))
         records.append(contour(z, x, *segments, facing=facing))
+    if dice.random() < 0.3:
+        width, x = dice.randint(3, 20), dice.randint(0, radius - 1)
+        z = -dice.randint(width, 100)
+        groove = PlungeRecord(0, z, z - dice.randint(0, 40), x)
+        records += [POINT._replace(kind=1, width=width), cut(depth, peck=dice.choice((0, 7)))]
+        records.append(groove)
     return part(*records, radius=radius, front=front, retract=dice.randint(1, 12))

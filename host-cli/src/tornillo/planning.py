@@ -147,27 +147,34 @@ class Planner:
         if chain.facing:
             front = self.material.stock_front
             top = self.material.highest(front, chain.z_end, self.tool.below)
-            yield from self._rough_facing(chain, top, allowance)
-            along = not chain.simple
+            begin = self.material.free_end(chain.x, front)
+            yield from self._rough_facing(chain, top, begin, allowance)
         else:
             top = self.material.highest(chain.z, chain.z_end, self.tool.below)
+            begin = self.material.free_end(chain.x, chain.z + self.retract)
             allowance = min(allowance, max(0, top - chain.lowest))
             yield from self._rough_along(chain, top, allowance)
-            along = not (chain.simple and allowance == 0)
-        if along:
-            yield from self._along_contour(record, chain, top, allowance)
+        if not (chain.simple and allowance == 0):
+            yield from self._along_contour(record, chain, top, allowance, begin <= chain.z)
 
     def _rough_along(self, chain: Chain, top: int, allowance: int) -> Iterator[Pass]:
-        """Passes parallel to Z, one pocket after the other."""
+        """Passes parallel to Z, one pocket after the other.
+
+        On the way to a stretch the tool stays above the levels that it has passed since the last
+        cut, in which earlier operations may have left nothing to cut.
+        """
         levels = [top, *spread(top, chain.lowest + allowance, self.cut.depth_of_cut)]
+        passed = chain.lowest
         for number, stretch in pockets(chain, [level - allowance for level in levels]):
             height, level = levels[number - 1], levels[number]
+            passed = max(passed, height)
             radius = level - allowance
             begin = self.material.free_end(radius, stretch.start)
             if begin <= stretch.end:
                 continue
             is_open = self.material.free_end(radius, begin + self.retract) <= begin
-            self.path.rise(height + self.retract)
+            self.path.rise(passed + self.retract)
+            passed = level
             self.path.rapid_z(begin + self.retract if is_open else begin)
             if is_open:
                 self.path.rapid_x(level)
@@ -178,12 +185,15 @@ class Planner:
             self.path.rapid_x(level + self.retract)
             yield self._pass(Role.ROUGHING, height - level)
 
-    def _rough_facing(self, chain: Chain, top: int, allowance: int) -> Iterator[Pass]:
-        """Passes parallel to X, from the front towards the chuck."""
-        front = self.material.free_end(chain.x, self.material.stock_front)
-        before = front
-        for level in spread(front, chain.z_end, self.cut.depth_of_cut):
-            inner = facing_end(chain, level) + allowance
+    def _rough_facing(self, chain: Chain, top: int, begin: int, allowance: int) -> Iterator[Pass]:
+        """Passes parallel to X, from z = `begin` towards the chuck.
+
+        In front of the contour they reach in to its start: what the finishing passes do not
+        come along must not be left standing.
+        """
+        before = begin
+        for level in spread(begin, chain.z_end, self.cut.depth_of_cut):
+            inner = facing_end(chain, level) + (allowance if level < chain.z else 0)
             depth, before = before - level, level
             if inner >= top:
                 continue
@@ -194,18 +204,19 @@ class Planner:
             yield self._pass(Role.FACING, depth)
 
     def _along_contour(
-        self, record: ContourRecord, chain: Chain, top: int, allowance: int
+        self, record: ContourRecord, chain: Chain, top: int, allowance: int, is_open: bool
     ) -> Iterator[Pass]:
-        """The contour in one go: with the allowance, exactly, and as often again as wanted."""
-        begin = chain.z + self.retract
-        is_open = self.material.free_end(chain.x, begin) <= chain.z
+        """The contour in one go: with the allowance, exactly, and as often again as wanted.
+
+        `is_open` tells that nothing higher than its start stands in front of it.
+        """
         passes = [(Role.FINISHING, 0, self.cut.finish_feed)]
         if allowance > 0 and not chain.simple:
             passes.insert(0, (Role.SMOOTHING, allowance, self.cut.feed))
         passes += [(Role.SPRING, 0, self.cut.finish_feed)] * self.cut.kind
         for role, offset, feed in passes:
             self.path.rise(top + self.retract)
-            self.path.rapid_z(begin if is_open else chain.z)
+            self.path.rapid_z(chain.z + self.retract if is_open else chain.z)
             if is_open:
                 self.path.rapid_x(chain.x + offset)
                 self.path.feed_z(chain.z, feed)

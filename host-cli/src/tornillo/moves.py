@@ -113,7 +113,7 @@ class Stop:
 
 @dataclass(frozen=True)
 class Plan:
-    """Everything the lathe does for a part, in order; the last step is a stop at the end."""
+    """Everything the lathe does for a part, in order; the last step of a whole part is a stop."""
 
     image: PartImage
     steps: tuple[Pass | Stop, ...]
@@ -141,3 +141,5 @@ class Plan:
             if isinstance(step, Stop):
                 yield chain
                 chain = []
+        if chain:
+            yield chain

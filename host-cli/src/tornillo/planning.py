@@ -21,7 +21,7 @@ from tornillo.material import (
     interval,
     plunge_chain,
 )
-from tornillo.moves import Halt, Pass, Plan, Role, Stop
+from tornillo.moves import Halt, Pass, Place, Plan, Role, Stop
 from tornillo.protocol import ContourRecord, CutRecord, PauseRecord, PlungeRecord, ToolRecord
 from tornillo.toolpath import Toolpath
 
@@ -34,7 +34,8 @@ def plan_part(image: PartImage, machine: Machine) -> Plan:
 
     Raises ValueError when the image has no tool, no cutting data, or segments of unknown kind.
     """
-    return Plan(image, tuple(Planner(image, machine).steps()))
+    parked = -PARK_STEPS - machine.zero_z, -PARK_STEPS - machine.zero_x
+    return Plan(image, tuple(Planner(image, parked).steps()))
 
 
 def spread(outside: int, size: int, depth: int) -> list[int]:
@@ -60,14 +61,13 @@ def smallest(low: int, high: int, enough: Callable[[int], bool]) -> int:
 class Planner:
     """Plans one record after the other; knows what earlier operations have left."""
 
-    def __init__(self, image: PartImage, machine: Machine) -> None:
-        """Start with raw stock and the tool parked."""
+    def __init__(self, image: PartImage, parked: Place) -> None:
+        """Start with raw stock and the tool at the place where it parks, (z, x) in steps."""
         header = image.header
         self.image = image
         self.retract = header.retract
         self.material = Material(header.stock_radius, header.stock_front)
-        self.park_z = -PARK_STEPS - machine.zero_z
-        self.park_x = -PARK_STEPS - machine.zero_x
+        self.park_z, self.park_x = parked
         self.path = Toolpath(self.park_z, self.park_x, header.stock_radius + header.retract)
         self.operation = 0
         self._tool: ToolRecord | None = None

@@ -211,6 +211,9 @@ static uint8_t next_stretch(void)
     }
     done = last_e;
     while (level != 0) {
+        if (stretch_at(level) && contour_contains) {
+            done = contour_e; /* it has been cut before its pockets */
+        }
         if (level == 1 || (stretch_at(level - 1) && contour_contains)) {
             if (stretch_at(level)) {
                 return 1;

@@ -20,7 +20,7 @@
         extern  _stream_next
 
 ; struct segment of path.h
-SEGMENTS        equ     18
+SEGMENTS        equ     16
 SEGMENT_SIZE    equ     22
 AT_KIND         equ     12
 AT_MARK         equ     13

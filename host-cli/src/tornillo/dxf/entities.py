@@ -278,7 +278,7 @@ def _spline(thing: Any, origin: Origin, tolerance: float, file: str) -> list[Seg
 def _polyline(thing: Any, origin: Origin) -> list[Segment]:
     """The sides of a polyline, old or new."""
     if thing.dxftype() == "LWPOLYLINE":
-        places = [((x, y, 0.0), bulge) for x, y, bulge in thing.get_points("xyb")]
+        places = [((x, y, 0.0), float(bulge)) for x, y, bulge in thing.get_points("xyb")]
         closed = bool(thing.closed)
     else:
         places = [

@@ -54,8 +54,8 @@ def picture(task: Import, title: str, lines: Sequence[str], marks: Sequence[Mark
         for segment in task.outline():
             scene.line(OUTLINE, *sheet.path(segment))
         _draw_axis(scene, sheet, task, places)
-        for number, (place, text) in enumerate(marks, start=1):
-            _draw_mark(scene, sheet.at(place), f"{number} {text}")
+        for place, text in marks:
+            _draw_mark(scene, sheet.at(place), text)
     _write(scene, title, lines)
     return scene
 
@@ -95,7 +95,7 @@ def _draw_axis(scene: Scene, sheet: _Sheet, task: Import, places: Sequence[Point
 
 
 def _draw_mark(scene: Scene, at: Point, text: str) -> None:
-    """A ring around a place, with its number."""
+    """A ring around a place, with what is there."""
     angles = [2 * math.pi * index / RING_CORNERS for index in range(RING_CORNERS + 1)]
     ring = [(at[0] + RING * math.cos(turn), at[1] + RING * math.sin(turn)) for turn in angles]
     scene.line(MARK, *ring)

@@ -41,11 +41,13 @@ def approximate(
 def _longest(
     curve: Curve, start: float, last: float, tolerance: float, origin: Origin
 ) -> tuple[float, list[Segment]]:
-    """The farthest place up to which one biarc does, and its pieces."""
-    best = _fitting(curve, start, last, tolerance, origin)
-    if best:
-        return last, best
-    low, high = start, last
+    """The farthest place up to which one biarc does, and its pieces; else a short line."""
+    pieces = _fitting(curve, start, last, tolerance, origin)
+    if pieces:
+        return last, pieces
+    low = min(last, start + SHORTEST)
+    best = [Segment(curve(start), curve(low), origin)]
+    high = last
     for _ in range(HALVINGS):
         middle = (low + high) / 2
         pieces = _fitting(curve, start, middle, tolerance, origin)
@@ -53,10 +55,7 @@ def _longest(
             low, best = middle, pieces
         else:
             high = middle
-    if best:
-        return low, best
-    low = min(last, start + (last - start) * SHORTEST)
-    return low, [Segment(curve(start), curve(low), origin)]
+    return low, best
 
 
 def _fitting(
@@ -92,9 +91,7 @@ def _biarc(curve: Curve, start: float, end: float, origin: Origin) -> list[Segme
     forward = vx * (t0[0] + t1[0]) + vy * (t0[1] + t1[1])
     bend = 2 * (1 - t0[0] * t1[0] - t0[1] * t1[1])
     root = math.sqrt(forward * forward + bend * square)
-    if forward + root <= 0:
-        return [Segment(p0, p1, origin)]
-    reach = square / (forward + root)
+    reach = square / max(forward + root, STRAIGHT)
     joint = (
         (p0[0] + p1[0] + reach * (t0[0] - t1[0])) / 2,
         (p0[1] + p1[1] + reach * (t0[1] - t1[1])) / 2,

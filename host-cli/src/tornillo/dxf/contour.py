@@ -19,6 +19,7 @@ SLACK_DEGREES = 0.05
 SHARE = 1e-6
 EXACT = 1e-9
 SQUARE = 0.01
+CHORD_SHARE = 0.5
 QUARTER = 90.0
 
 
@@ -131,7 +132,12 @@ def _finished(
             "check --spindle: the spindle runs along the drawing's x, or y when said so",
         )
     fall = _check_slopes(pieces, tool, place)
-    tidy = [half for segment in _merged(pieces) for half in _clear(segment)]
+    tidy = [
+        piece
+        for segment in _merged(pieces)
+        for half in _clear(segment)
+        for piece in _representable(half, place)
+    ]
     return Contour(tuple(tidy), face, fall, tuple(remarks))
 
 
@@ -319,3 +325,13 @@ def _clear(segment: Segment) -> list[Segment]:
     if max(heights) > SHARE * segment.radius:
         return [segment]
     return segment.cut(segment.along(segment.center[0]))
+
+
+def _representable(segment: Segment, place: Place) -> list[Segment]:
+    """An arc as it is, or as chords when its centre is farther away than a part can tell."""
+    if segment.radius <= place.paper.largest_radius:
+        return [segment]
+    height = segment.radius * (1 - math.cos(segment.sweep / 2))
+    count = max(1, math.ceil(math.sqrt(height / (CHORD_SHARE * place.tolerance))))
+    chords = segment.cut(index / count for index in range(1, count))
+    return [replace(chord, center=None) for chord in chords]

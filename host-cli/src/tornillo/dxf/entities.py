@@ -24,6 +24,7 @@ HIDDEN_NAMES = ("HIDDEN", "DASHED", "PHANTOM", "ACAD_ISO02")
 CONSTRUCTION_LAYER = "DEFPOINTS"
 DEEPEST_BLOCK = 16
 FRAME_POINT = 16
+DWG_START = b"AC10"
 FLAT = 1e-6
 
 
@@ -49,8 +50,6 @@ def open_drawing(path: Path) -> "Drawing":
     Raises DrawingError when it cannot be read, TornilloError without ezdxf.
     """
     try:
-        from ezdxf import recover
-        from ezdxf.filemanagement import readfile
         from ezdxf.lldxf.const import DXFError
     except ImportError as error:
         raise TornilloError(
@@ -58,25 +57,36 @@ def open_drawing(path: Path) -> "Drawing":
         ) from error
     try:
         with path.open("rb") as file:
-            start = file.read(6)
+            start = file.read(len(DWG_START))
     except OSError as error:
         raise DrawingError(
             f"{path}: the drawing cannot be read: {error.strerror}", "check its name and place"
         ) from error
-    if start.startswith(b"AC10"):
+    if start == DWG_START:
         raise DrawingError(
             f"{path}: this is a DWG file", "save it as DXF (ASCII, R12 or later) in the CAD program"
         )
     try:
+        if not start:
+            raise ValueError("it is empty")
+        return _load(path)
+    except (OSError, ValueError, DXFError) as error:
+        raise DrawingError(
+            f"{path}: this is not a DXF drawing, or it is damaged: {error}",
+            "export it again as DXF (ASCII, R12 or later)",
+        ) from error
+
+
+def _load(path: Path) -> "Drawing":
+    """The document, repaired when it is damaged."""
+    from ezdxf import recover
+    from ezdxf.filemanagement import readfile
+    from ezdxf.lldxf.const import DXFError
+
+    try:
         return readfile(path)
     except (OSError, ValueError, DXFError):
-        try:
-            return recover.readfile(path)[0]
-        except (OSError, ValueError, DXFError) as error:
-            raise DrawingError(
-                f"{path}: this is not a DXF drawing, or it is damaged: {error}",
-                "export it again as DXF (ASCII, R12 or later)",
-            ) from error
+        return recover.readfile(path)[0]
 
 
 def unit_of(document: "Drawing") -> str:

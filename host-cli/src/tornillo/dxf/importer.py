@@ -26,6 +26,10 @@ MM_PER = {
 }  # fmt: skip
 INCH_FAMILY = ("inch", "foot", "mil")
 HALF_STEP = 0.5
+# Of the part image: the centre of an arc lies at most 2^15 steps away, and the segments have
+# what its 960 bytes leave for them.
+LARGEST_RADIUS_STEPS = 32_000
+LINE_BYTES, ARC_BYTES, ROOM_BYTES = 5, 11, 860
 MOST_SEGMENTS = 400
 
 
@@ -76,7 +80,7 @@ class Import:
         self._check_size(contour, cutting, units)
         self.contour = contour
         self.remarks = [self._unit_remark(units), half.remark, *contour.remarks]
-        self.remarks += self._left_out()
+        self.remarks += self._left_out() + _long(contour)
         return part_text(contour, cutting, units.written, self.path, self.remarks)
 
     def _units(self, named: str) -> Units:
@@ -97,8 +101,8 @@ class Import:
     def _paper(self, units: Units) -> Paper:
         """How the drawing is measured."""
         view = self.view
-        half_step = HALF_STEP * self.machine.step_z_nm / NM_PER_UNIT[units.written]
-        tolerance = half_step if view.tolerance is None else view.tolerance
+        step = self.machine.step_z_nm / NM_PER_UNIT[units.written]
+        tolerance = HALF_STEP * step if view.tolerance is None else view.tolerance
         snap = DEFAULTS[units.written].snap if view.snap is None else view.snap
         return Paper(
             file=str(self.path),
@@ -106,6 +110,7 @@ class Import:
             factor=units.factor,
             tolerance=tolerance / units.factor,
             snap=snap / units.factor,
+            largest_radius=LARGEST_RADIUS_STEPS * step,
             upright=view.spindle == "y",
         )
 
@@ -161,3 +166,15 @@ class Import:
             return []
         paper = self.paper
         return [segment.mapped(paper.turn, paper.upright) for segment in self.half.pieces]
+
+
+def _long(contour: Contour) -> list[str]:
+    """A warning when the profile may need more room than the lathe has for a part."""
+    arcs = sum(1 for segment in contour.segments if segment.center)
+    size = ARC_BYTES * arcs + LINE_BYTES * (len(contour.segments) - arcs)
+    if size <= ROOM_BYTES:
+        return []
+    return [
+        f"the profile has {len(contour.segments)} pieces, perhaps too many for the lathe's memory: "
+        "a larger --tolerance makes fewer"
+    ]

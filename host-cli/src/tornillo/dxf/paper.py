@@ -13,7 +13,8 @@ class Paper:
     """The drawing `file` while it is read.
 
     `units` are those of the part file, `factor` one unit of the drawing in them. `tolerance`
-    and `snap` are in units of the drawing. With `upright` the spindle runs along the
+    and `snap` are in units of the drawing; `largest_radius`, of an arc that a part can have,
+    in those of the part file. With `upright` the spindle runs along the
     drawing's y; x and y are then exchanged while it is read.
     """
 
@@ -22,6 +23,7 @@ class Paper:
     factor: float
     tolerance: float
     snap: float
+    largest_radius: float
     upright: bool
 
     @property

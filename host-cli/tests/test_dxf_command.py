@@ -173,6 +173,9 @@ def test_other_pictures_and_sizes_below_zero_are_wrong_usage(
     assert result.exit_code == 2
     assert "must end in .svg or .png" in result.stderr
     assert tornillo("import-dxf", pin, "-o", output, "--snap", "-1").exit_code == 2
+    result = tornillo("import-dxf", pin, "-o", output, "--tool", 'a"b')
+    assert result.exit_code == 2
+    assert "use 1 to 12 of the characters a-z, 0-9 and -" in result.stderr
     assert tornillo("import-dxf", pin).exit_code == 2
 
 

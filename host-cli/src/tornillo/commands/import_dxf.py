@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The verb import-dxf."""
 
+import re
 from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import click
 from tornillo.commands.connection import machine_option
 from tornillo.errors import DrawingError, TornilloError
 from tornillo.machine import Machine
+from tornillo.protocol import NAME_LENGTH
 
 if TYPE_CHECKING:
     from tornillo.dxf.importer import Import
@@ -20,7 +22,7 @@ ABOVE_ZERO = click.FloatRange(min=0, min_open=True)
 NOT_BELOW_ZERO = click.FloatRange(min=0)
 DEGREES = click.FloatRange(min=0, max=90)
 PICTURES = (".svg", ".png")
-TOOL_NAME = "profiling"
+TOOL_NAME, TOOL_NAME_LENGTH = "profiling", 12
 
 
 def _options(*options: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -37,6 +39,17 @@ def _options(*options: Callable[[Any], Any]) -> Callable[[Any], Any]:
 def _length(name: str, text: str) -> Callable[[Any], Any]:
     """An option with a length above 0."""
     return click.option(name, type=ABOVE_ZERO, metavar="LENGTH", help=text)
+
+
+def _name_of(most: int) -> Callable[[Any, Any, str | None], str | None]:
+    """A check that a name has 1 to `most` of the characters a lathe can show."""
+
+    def checked(_context: Any, _option: Any, name: str | None) -> str | None:
+        if name is not None and not re.fullmatch(f"[a-z0-9-]{{1,{most}}}", name):
+            raise click.BadParameter(f"use 1 to {most} of the characters a-z, 0-9 and -")
+        return name
+
+    return checked
 
 
 view_options = _options(
@@ -85,7 +98,12 @@ view_options = _options(
 )
 
 cutting_options = _options(
-    click.option("--name", metavar="NAME", help="Name of the part; that of the file else."),
+    click.option(
+        "--name",
+        callback=_name_of(NAME_LENGTH),
+        metavar="NAME",
+        help="Name of the part; that of the file else.",
+    ),
     _length("--stock-diameter", "Raw bar; the part's largest diameter, rounded up, else."),
     _length("--stock-length", "Free in front of the chuck; 5 mm more than the part else."),
     click.option(
@@ -107,7 +125,11 @@ cutting_options = _options(
     _length("--retract", "From the work in rapid moves.  [default: 0.5 mm]"),
     click.option("--rpm", "spindle_speed", type=ABOVE_ZERO, metavar="RPM", help="Noted as advice."),
     click.option(
-        "--tool", "tool_name", metavar="NAME", help="Name of the tool, 1 to 12 of a-z, 0-9 and -."
+        "--tool",
+        "tool_name",
+        callback=_name_of(TOOL_NAME_LENGTH),
+        metavar="NAME",
+        help="Name of the tool.",
     ),
     click.option(
         "--hand",

@@ -153,7 +153,9 @@ cutting_options = _options(
         metavar="DEGREES",
         help="Steepest fall towards the chuck that the tool can follow.",
     ),
-    click.option("--nose-radius", type=NOT_BELOW_ZERO, default=0.0, metavar="LENGTH"),
+    click.option(
+        "--nose-radius", type=NOT_BELOW_ZERO, default=0.0, metavar="LENGTH", help="Of the tool."
+    ),
 )
 
 

@@ -18,10 +18,14 @@ Program = Callable[[str], str]
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def test_a_nose_radius_is_refused_until_it_is_modelled(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_nose_radius_may_be_given_and_a_negative_one_is_refused(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert build_parser().parse_args([]).nose_radius is None
+    assert build_parser().parse_args(["--nose-radius", "0.4"]).nose_radius == 0.4
     with pytest.raises(SystemExit):
-        build_parser().parse_args(["--nose-radius", "0.4"])
-    assert "only a nose radius of 0" in capsys.readouterr().err
+        build_parser().parse_args(["--nose-radius", "-0.4"])
+    assert "a nose radius is 0 or more" in capsys.readouterr().err
 
 
 def test_buttons_are_pressed_at_times_and_unknown_ones_refused() -> None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -66,7 +67,8 @@ def test_what_is_cut_too_deep_too_far_or_not_at_all_is_found() -> None:
     wanted = WantedPart(100, 400, 0, (Cylinder(0, -200, 60),))
     diameter, length = work.dimensions(wanted, 7112, 7112)
     assert (diameter["error_steps"], length["error_steps"]) == (-2, 3)
-    assert work.gouge_max_steps(wanted) == 100 - 58
+    # 3 steps behind the shoulder and 2 below the surface, measured to the edge between them.
+    assert work.gouge_max_steps(wanted) == pytest.approx(math.hypot(3, 2))
     untouched, _ = _work()
     diameter, length = untouched.dimensions(wanted, 7112, 7112)
     assert (diameter["error_steps"], length["error_steps"]) == (40, -200)

@@ -103,6 +103,12 @@ class Ruler:
             column += direction
         return self._surface.z_of(column)
 
+    def _front_of(self, radius: float) -> float:
+        """Return the z up to which metal thicker than a radius reaches."""
+        radii = self._surface.radii
+        thick = (column for column in reversed(range(len(radii))) if radii[column] > radius)
+        return self._surface.z_of(min(next(thick, -1) + 1, len(radii) - 1))
+
     @staticmethod
     def _below_edge(low: float, high: float) -> float:
         return high - min((high - low) / 2, max(0.5, BELOW_EDGE * (high - low)))
@@ -110,11 +116,8 @@ class Ruler:
     # -- operations -------------------------------------------------------------------------------
 
     def _face(self, name: str, face: Face) -> Entry:
-        radii = self._surface.radii
-        column = len(radii) - 1
-        while column >= 0 and radii[column] <= face.drawn.radius + 0.5:
-            column -= 1
-        return self._length(f"{name} z", face.drawn.length, self._surface.z_of(column + 1))
+        front = self._front_of(face.drawn.radius + 0.5)
+        return self._length(f"{name} z", face.drawn.length, front)
 
     def _cylinder(self, owner: int, name: str, cylinder: Cylinder) -> list[Entry]:
         ends = (Point(z, float(cylinder.radius)) for z in (cylinder.start, cylinder.end))
@@ -156,8 +159,7 @@ class Ruler:
         _, ahead = self._contour.both_sides(back)
         height = self._below_edge(max(0.0, cut.radius), ahead)
         wall = self._wall(back - cut.width / 2, height, 1)
-        foremost = max((i for i, r in enumerate(self._surface.radii) if r > 0), default=0)
-        front = self._surface.z_of(min(foremost + 1, len(self._surface.radii) - 1))
+        front = self._front_of(0.0)
         wanted_front = max((p.high for p in self._contour.pieces if p.segment.end.x > 0), default=0)
         return self._length(f"{name} length", wanted_front - cut.z, front - wall)
 

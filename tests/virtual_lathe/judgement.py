@@ -13,8 +13,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .contour import STOCK
-from .metal import PER_STEP, reachable
-from .shape import TINY, Line, Point
+from .metal import PER_STEP, heights_above, reachable
+from .shape import TINY, Point
 from .tool import Tool
 from .wanted import WantedPart
 
@@ -123,23 +123,11 @@ def left(surface: Surface, wanted: WantedPart) -> float:
     target = Reach(wanted).target()
     radii = surface.over(-wanted.length, wanted.front).radii[:: PER_STEP // COARSE]
     heights = [radius - low for radius, low in zip(radii, target, strict=True)]
+    order = _deepest_first(heights)
+    above = heights_above(target, COARSE, ((column, radii[column]) for column in order))
     worst = 0.0
-    for column in _deepest_first(heights):
+    for column in order:
         if heights[column] <= worst:
             break
-        worst = max(worst, _above(target, column, radii[column]))
+        worst = max(worst, next(above))
     return round(worst, 6)
-
-
-def _above(target: Sequence[float], column: int, radius: float) -> float:
-    """How far a place is above a surface of columns, in steps."""
-    best = radius - target[column]
-    away = 0
-    while away / COARSE < best:
-        for start in (column + away, column - away - 1):
-            if start >= 0 and start + 1 < len(target):
-                ends = (Point(i / COARSE, min(target[i], 1e9)) for i in (start, start + 1))
-                place = Point(column / COARSE, radius)
-                best = min(best, Line(*ends).distance_to(place))
-        away += 1
-    return best

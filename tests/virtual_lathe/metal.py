@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from .native_library import CutC, PathC, library
@@ -72,3 +72,16 @@ def reachable(tool: Tool, wanted: Sequence[float], per_step: int) -> list[float]
     given, reached = (ctypes.c_double * count)(*wanted), (ctypes.c_double * count)()
     library().vl_reach(ctypes.byref(tool.native()), given, reached, count, per_step)
     return list(reached)
+
+
+def heights_above(
+    surface: Sequence[float], per_step: int, places: Iterable[tuple[int, float]]
+) -> Iterator[float]:
+    """Yield how far each place (column, radius) stands above a surface, in steps.
+
+    The distance is that to the nearest point of the surface; where it is infinite there is none.
+    """
+    count = len(surface)
+    given = (ctypes.c_double * count)(*surface)
+    for column, radius in places:
+        yield float(library().vl_above(given, count, per_step, column, radius))

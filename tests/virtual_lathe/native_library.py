@@ -206,6 +206,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_metal_radius": (c_double, [c_int, c_int]),
     "vl_metal_fallen": (c_int, [c_int, _DOUBLES, c_int]),
     "vl_tool_outline": (c_double, [POINTER(ToolC), c_double]),
+    "vl_above": (c_double, [_DOUBLES, c_int, c_int, c_int, c_double]),
     "vl_reach": (None, [POINTER(ToolC), _DOUBLES, _DOUBLES, c_int, c_int]),
 }
 

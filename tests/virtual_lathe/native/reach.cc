@@ -75,6 +75,15 @@ double reached_at(const std::vector<double> &floor, double lowest,
     return best;
 }
 
+// Distance of the point (0, x) to the line between (z, from) and (z + wide, to).
+double to_line(double x, double z, double wide, double from, double to)
+{
+    double rise = to - from;
+    double part = (-z * wide + (x - from) * rise) / (wide * wide + rise * rise);
+    part = std::clamp(part, 0.0, 1.0);
+    return std::hypot(z + part * wide, from + part * rise - x);
+}
+
 } // namespace
 
 } // namespace lathe
@@ -98,4 +107,19 @@ void vl_reach(const struct vl_tool *tool, const double *wanted, double *reached,
         double best = reached_at(floor, lowest, table, i);
         reached[i] = std::max(wanted[i], best);
     }
+}
+
+double vl_above(const double *surface, int count, int per_step, int column,
+                double radius)
+{
+    const double wide = 1.0 / per_step, wall = 1e9;
+    double best = radius - surface[column];
+    for (int away = 0; away * wide < best; away++)
+        for (int first : {column + away, column - away - 1})
+            if (first >= 0 && first + 1 < count)
+                best = std::min(
+                    best, lathe::to_line(radius, (first - column) * wide, wide,
+                                         std::min(surface[first], wall),
+                                         std::min(surface[first + 1], wall)));
+    return best;
 }

@@ -265,6 +265,10 @@ double vl_tool_outline(const struct vl_tool *tool, double u);
  * with `count` radii, `per_step` of them to a step. */
 void vl_reach(const struct vl_tool *tool, const double *wanted, double *reached,
               int count, int per_step);
+/* How far a radius at a column stands above such a surface, in steps: the
+ * distance to the lines between its radii.  Infinite radii are no surface. */
+double vl_above(const double *surface, int count, int per_step, int column,
+                double radius);
 
 #ifdef __cplusplus
 }

@@ -20,6 +20,8 @@ from .wanted import Cylinder, Face, Groove, Operation, PartOff, Turned, WantedPa
 
 #: A wall is looked for below its upper edge by this part of its height, but half a step at least.
 BELOW_EDGE = 0.1
+#: So much at the ends of a segment is not looked at, unless it is too short.
+EDGE_STEPS = 1
 #: A sloped line or an arc needs that many columns to be measured.
 ENOUGH = 3
 
@@ -85,8 +87,13 @@ class Ruler:
     # -- looking ----------------------------------------------------------------------------------
 
     def _own(self, owner: int, segment: Segment) -> list[Point]:
-        """Return the measured points that belong to a segment, from the chuck on."""
+        """Return the measured points that belong to a segment, from the chuck on.
+
+        The last step at either end may be a steep wall already, where radii mean nothing.
+        """
         low, high = sorted((segment.start.z, segment.end.z))
+        if high - low > 4 * EDGE_STEPS:
+            low, high = low + EDGE_STEPS, high - EDGE_STEPS
         points = []
         grid = segment.on_grid()
         for i in range(math.ceil(low * COARSE), math.floor(high * COARSE) + 1):
@@ -128,8 +135,9 @@ class Ruler:
         behind, _ = self._contour.both_sides(end)
         if behind > cylinder.radius + TINY:
             height = self._below_edge(cylinder.radius, behind)
-            end = self._wall(own[-1].z, height, -1)
-        radius = _farthest([p for p in own if p.z >= end], cylinder.radius)
+            uncut = own[-1].x >= height
+            end = float(cylinder.start) if uncut else self._wall(own[-1].z, height, -1)
+        radius = _farthest([p for p in own if p.z >= end] or own, cylinder.radius)
         length = cylinder.start - end
         return [
             self._diameter(f"{name} diameter", cylinder.drawn.radius, radius),
@@ -147,7 +155,8 @@ class Ruler:
         _, ahead = self._contour.both_sides(grid.start.z)
         back = self._wall(middle, self._below_edge(groove.radius, behind), -1)
         front = self._wall(middle, self._below_edge(groove.radius, ahead), 1)
-        bottom_radius = _farthest([p for p in own if back <= p.z <= front], groove.radius)
+        inside = [p for p in own if back <= p.z <= front]
+        bottom_radius = _farthest(inside or own, groove.radius)
         return [
             self._diameter(f"{name} diameter", groove.radius, bottom_radius),
             self._length(f"{name} width", groove.start - groove.end, front - back),

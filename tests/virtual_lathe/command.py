@@ -168,7 +168,7 @@ class Session:
             f"t={self.lathe.seconds:.1f}s X={x.slide:g} Z={z.slide:g} "
             f"steps={x.steps}+{z.steps} lost={x.lost_steps}+{z.lost_steps} "
             f"cut={self.lathe.workpiece.steps_cutting} port={usb} "
-            f"led={self.lathe.chip.level('RC0')}"
+            f"led={self.lathe.chip.level('RC0')} tool={self.lathe.workpiece.tool.name}"
         )
 
     def run(self) -> None:

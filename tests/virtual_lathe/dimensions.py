@@ -21,7 +21,7 @@ from .wanted import Cylinder, Face, Groove, Operation, PartOff, Turned, WantedPa
 #: A wall is looked for below its upper edge by this part of its height, but half a step at least.
 BELOW_EDGE = 0.1
 #: So much at the ends of a segment is not looked at, unless it is too short.
-EDGE_STEPS = 1
+EDGE_STEPS = 2
 #: A sloped line or an arc needs that many columns to be measured.
 ENOUGH = 3
 
@@ -89,7 +89,7 @@ class Ruler:
     def _own(self, owner: int, segment: Segment) -> list[Point]:
         """Return the measured points that belong to a segment, from the chuck on.
 
-        The last step at either end may be a steep wall already, where radii mean nothing.
+        The last steps at either end may be a steep wall already, where radii mean nothing.
         """
         low, high = sorted((segment.start.z, segment.end.z))
         if high - low > 4 * EDGE_STEPS:

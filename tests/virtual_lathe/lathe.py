@@ -364,6 +364,7 @@ class VirtualLathe:
             "angles": ruler.angles() if ruler else [],
             "circles": ruler.circles() if ruler else [],
             "tool": work.tool.name,
+            "nose_radius_mm": round(work.tool.nose * STEP_NM / 1e6, 6),
             "steps_cutting": work.steps_cutting,
             "setup": self._setup_report(),
             "slide_x": self.machine.axis(AxisName.X).slide,

@@ -131,6 +131,28 @@ def test_an_arc_is_measured_by_its_radius_and_its_worst_deviation(
     assert circle["centre_off_steps"] < 0.5
 
 
+def test_a_profile_is_measured_segment_by_segment() -> None:
+    places = ((100, 0), (100, -50), (150, -50), (200, -150), (200, -220))
+    points = [Point(z, x) for x, z in places]
+    chain = tuple(Line(a, b) for a, b in pairwise(points))
+    wanted = WantedPart(300, LENGTH, 0, (Turned("profile", chain),))
+    work, driver = bench(Tool())
+    driver.along((102, 60), (102, -51), (150, -51), (201, -151), (201, -220), (320, -220))
+    measured = {entry["name"]: entry for entry in work.dimensions(wanted, 10_000, 10_000)}
+    assert {name: round(entry["error_steps"], 1) for name, entry in measured.items()} == {
+        "profile 1 line 1 diameter": 2,
+        "profile 1 line 2 z": -1,
+        "profile 1 line 3 start diameter": -0.5,
+        "profile 1 line 3 end diameter": 0.5,
+        "profile 1 line 4 diameter": 1,
+    }
+    assert measured["profile 1 line 2 z"]["wanted_mm"] == -0.5
+    assert measured["profile 1 line 3 end diameter"]["wanted_mm"] == 4.0
+    (angle,) = Ruler(work.surface(), wanted, 10_000, 10_000).angles()
+    assert angle["wanted_degrees"] == pytest.approx(math.degrees(math.atan(0.5)), abs=1e-3)
+    assert angle["error_steps"] == pytest.approx(1.0, abs=0.1)
+
+
 # -- edges -----------------------------------------------------------------------------------------
 
 

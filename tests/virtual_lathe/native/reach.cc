@@ -75,7 +75,7 @@ double reached_at(const std::vector<double> &floor, double lowest,
     return best;
 }
 
-// Distance of the point (0, x) to the line between (z, from) and (z + wide, to).
+// How far (0, x) is from the line between (z, from) and (z + wide, to).
 double to_line(double x, double z, double wide, double from, double to)
 {
     double rise = to - from;

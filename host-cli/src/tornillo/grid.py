@@ -58,7 +58,9 @@ def path_segments(
         for segment in _segments(element, grid, at, exact):
             if segments and not exact and _straight_on(segments[-1], segment):
                 before = segments.pop()
-                segments.append(before._replace(dz=before.dz + segment.dz, dx=before.dx + segment.dx))
+                segments.append(
+                    before._replace(dz=before.dz + segment.dz, dx=before.dx + segment.dx)
+                )
             else:
                 segments.append(segment)
             at = at[0] + segment.dz, at[1] + segment.dx

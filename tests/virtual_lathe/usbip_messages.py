@@ -142,7 +142,9 @@ def reply_list(devices: Iterable[Exported]) -> bytes:
     """Return OP_REP_DEVLIST."""
     known = list(devices)
     body = b"".join(device.packed() + device.interfaces() for device in known)
-    return OPERATION.pack(VERSION, Code.REPLY_LIST, Answer.OK) + struct.pack(">I", len(known)) + body
+    return (
+        OPERATION.pack(VERSION, Code.REPLY_LIST, Answer.OK) + struct.pack(">I", len(known)) + body
+    )
 
 
 def reply_import(answer: Answer, device: Exported | None = None) -> bytes:

@@ -327,9 +327,13 @@ class UsbHost:
         """Open the serial port as a program does: line coding, DTR and RTS, polling."""
         self.control(0x21, SET_LINE_CODING, data=struct.pack("<IBBB", 115200, 0, 0, 8))
         self.control(0x21, SET_CONTROL_LINE_STATE, DTR | RTS)
+        self.poll()
+        self.port_open = True
+
+    def poll(self) -> None:
+        """Serve the endpoints of :attr:`description` from now on, as an open port has it."""
         found = self.description
         self._native.vl_usb_open(self.address, found.bulk_in, found.bulk_out, found.notification)
-        self.port_open = True
 
     def close_port(self) -> None:
         """Close the serial port: polling stops, DTR falls."""

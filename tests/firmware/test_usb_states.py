@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the device does in each of its states (USB 2.0, 9.1 and 9.4), and that nothing gets stuck."""
+"""The device in each of its states (USB 2.0, 9.1 and 9.4), and that nothing gets stuck."""
 
 from __future__ import annotations
 

@@ -147,6 +147,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_clear_statistics": (None, []),
     "vl_watch_writes": (c_int, [c_uint, c_uint]),
     "vl_ram_writes": (c_int, [POINTER(RamWriteC), c_int]),
+    "vl_written": (None, [_BYTES]),
     "vl_pin_drive": (c_int, [c_int, c_int]),
     "vl_pin_drive_volts": (c_int, [c_int, c_double, c_double]),
     "vl_pin_level": (c_int, [c_int]),

@@ -110,7 +110,7 @@ void UsbEngine::bus_reset(bool active)
     reg(UCON) &= ~PKTDIS;
     reg(UADDR) = 0;
     set_address_open_ = false;
-    wanted_address_ = NO_ADDRESS;
+    wanted_address_ = granted_address_ = NO_ADDRESS;
     address_ticket_++;
     reset_seen_ = true;
     raise(URSTIF);

@@ -119,7 +119,7 @@ void UsbEngine::reset()
     std::fill(std::begin(regs_), std::end(regs_), 0);
     fifo_.clear();
     status_shown_ = status_read_ = set_address_open_ = reset_seen_ = false;
-    wanted_address_ = NO_ADDRESS;
+    wanted_address_ = granted_address_ = NO_ADDRESS;
     address_ticket_++;
     highest_ = 0;
     idle_ = false;
@@ -256,10 +256,11 @@ void UsbEngine::write(unsigned address, unsigned value)
         mistake(text("write to read-only register 0x%03x", address));
         return;
     case UADDR:
-        if (value & 0x7F && set_address_open_)
-            mistake("UADDR written before the status stage of SET_ADDRESS");
-        else if (value & 0x7F && value != wanted_address_)
-            mistake(text("UADDR set to %u, which nobody asked for", value));
+        if (value & 0x7F && value != granted_address_)
+            mistake(
+                set_address_open_
+                    ? "UADDR written before the status stage of SET_ADDRESS"
+                    : text("UADDR set to %u, which nobody asked for", value));
         reg(UADDR) = value & 0x7F;
         return;
     case UCFG:

@@ -97,7 +97,9 @@ private:
     uint64_t last_pop_ = 0;    // cycle of the last TRNIF cleared
     uint64_t last_setup_ = 0;
     uint64_t clock_back_ = 0; // cycle from which ACTVIF can be cleared
-    unsigned wanted_address_ = NO_ADDRESS, address_ticket_ = 0;
+    unsigned wanted_address_ = NO_ADDRESS;  // of the last SET_ADDRESS
+    unsigned granted_address_ = NO_ADDRESS; // its status stage is over
+    unsigned address_ticket_ = 0;
     bool set_address_open_ = false; // SET_ADDRESS without its status stage
     bool reset_seen_ = false;       // a bus reset nobody has handled yet
 };

@@ -81,6 +81,7 @@ void UsbEngine::setup_seen(const std::vector<uint8_t> &data)
 void UsbEngine::expect_address()
 {
     unsigned wanted = wanted_address_;
+    granted_address_ = wanted;
     unsigned ticket = ++address_ticket_;
     chip().at(chip().now() + ADDRESS_CYCLES, [this, wanted, ticket] {
         if (ticket == address_ticket_ && reg(UADDR) != wanted)

@@ -97,6 +97,8 @@ struct vl_ram_write {
     uint32_t address, value, pc;
 };
 int vl_ram_writes(struct vl_ram_write *entries, int room);
+/* One byte per watched address, 1 = written since it is watched; no limit. */
+void vl_written(uint8_t flags[4096]);
 
 /* ---- Pins: pins.cc ------------------------------------------------------ */
 

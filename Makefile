@@ -46,6 +46,10 @@ test-kernel: firmware virtual-lathe-library ## cut a part through the USB driver
 	@tests/kernel/setup.sh $(CACHE)
 	@TORNILLO_REFRESH_DESCRIPTORS=$(REFRESH) $(PYTHON) -m pytest tests/kernel/check_linux.py
 
+.PHONY: fuzz
+fuzz: firmware virtual-lathe-library ## a million USB transfers and frames of nonsense, some minutes
+	@$(PYTHON) -m fuzz.fuzz $(ARGS)
+
 .PHONY: lint
 lint: firmware ## cppcheck, clang-format, ruff, mypy, generated files up to date
 	@tests/lint/lint.sh $(VENV)

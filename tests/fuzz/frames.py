@@ -86,23 +86,26 @@ class FrameFuzzer:
         self._host = target.bench.host
         self._chance = random.Random(seed)
         self._corpus = corpus()
+        self._tail = b""
         self._begin()
         self.counts = Counts()
 
     def _begin(self) -> None:
         self._target.check_alive()
         self._target.bench.chip.set_variable("frame_bad_frames", 0, 2)
+        self._tail = b""
         hello = crc16(bytes((0, Command.HELLO)))
         self._expected = Expected(answered=(0, hello))
 
     def run(self, frames: int) -> None:
-        """Send so many frames.
+        """Send so many frames more.
 
         Raises:
             Broken: with the bytes of the batch that did it.
         """
-        while self.counts.frames < frames:
-            pieces = [self._piece() for _ in range(min(BATCH, frames - self.counts.frames))]
+        end = self.counts.frames + frames
+        while self.counts.frames < end:
+            pieces = [self.piece() for _ in range(min(BATCH, end - self.counts.frames))]
             self.play(pieces)
             if self.counts.frames % ALIVE_EVERY < BATCH:
                 self._begin()
@@ -135,7 +138,9 @@ class FrameFuzzer:
             if more:
                 deadline = chip.seconds + HANG_S
             if chip.seconds > deadline:
-                raise Broken(f"{received.count(0)} of {replies} replies, {host.unsent} bytes unsent")
+                raise Broken(
+                    f"{received.count(0)} of {replies} replies, {host.unsent} bytes unsent"
+                )
         host.wait(POLL_S)
         while chip.variable("usb_received"):
             host.wait(POLL_S)
@@ -163,9 +168,9 @@ class FrameFuzzer:
         expected.bad = 0
         expected.right.clear()
 
-    # -- making pieces ------------------------------------------------------------------------------
+    # -- making pieces --------------------------------------------------------------------------------
 
-    def _piece(self) -> bytes:
+    def piece(self) -> bytes:
         """Bytes for one frame, or what takes its place; never one that moves the lathe."""
         while True:
             chance = self._chance
@@ -200,7 +205,7 @@ class FrameFuzzer:
 
     def _pending(self) -> bytes:
         """What of the pieces made so far has no delimiter yet."""
-        return getattr(self, "_tail", b"")
+        return self._tail
 
     def _right(self) -> bytes:
         """A frame that is right, with a likely or a random code and payload."""

@@ -18,6 +18,8 @@ RAM_END = 0x800
 ESTOP_PIN = "RD7"
 #: Simulated seconds after which a request without answer is a hang.
 HANG_S = 2.0
+#: Counters with their sizes, which reach their upper bytes by and by.
+COUNTERS = {"milliseconds": 4, "frame_bad_frames": 2}
 #: What happens by itself happens within this simulated time.
 LONG_S = 3.0
 IMAGE = bytes(range(84))
@@ -52,6 +54,8 @@ class Target:
         """Everything a host can ask for by right, except motion; returns the RAM written."""
         chip = self.bench.chip
         chip.watch_writes(0, RAM_END - 1)
+        for name, size in COUNTERS.items():
+            chip.set_variable(name, (1 << 8 * size - 1) - 1, size)
         self._control_requests()
         self._link_requests()
         self._accidents()

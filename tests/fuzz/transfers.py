@@ -65,7 +65,7 @@ class TransferFuzzer:
         """
         try:
             for _ in range(transfers):
-                case = self._case()
+                case = self.case()
                 self.recent.append(case)
                 self.play(case)
                 if self.counts.transfers % CHECK_EVERY == 0:
@@ -77,9 +77,14 @@ class TransferFuzzer:
             cases = "\n".join(self.recent)
             raise Broken(f"{broken}\nafter transfer {self.counts.transfers}:\n{cases}") from broken
 
-    # -- making cases -------------------------------------------------------------------------------
+    def check_alive(self) -> None:
+        """See :meth:`Target.check_alive`."""
+        self._target.check_alive()
 
-    def _case(self) -> str:
+    # -- making cases ---------------------------------------------------------------------------------
+
+    def case(self) -> str:
+        """The next case."""
         chance = self._chance
         if chance.random() < 0.1:
             return self._mutated(chance.choice(self._corpus))
@@ -118,21 +123,18 @@ class TransferFuzzer:
     def _step(self) -> str:
         chance = self._chance
         toggle = chance.randrange(2)
-        what = chance.random()
-        if what < 0.45:
-            return "in 0"
-        if what < 0.7:
-            data = chance.randbytes(chance.choice([0, 1, 7, 8, 15, 16]))
-            return f"out 0 {toggle} {data.hex()}"
-        if what < 0.8:
-            return f"out 2 {toggle} {chance.randbytes(chance.randrange(65)).hex()}"
-        if what < 0.88:
-            return f"in {chance.choice([1, 2])}"
-        if what < 0.9:
-            return f"in {chance.randrange(16)}"
-        if what < 0.95:
-            return "lose"
-        return f"wait {chance.randrange(300)}"
+        small = chance.randbytes(chance.choice([0, 1, 7, 8, 15, 16]))
+        large = chance.randbytes(chance.randrange(65))
+        weights = {
+            "in 0": 45,
+            f"out 0 {toggle} {small.hex()}": 25,
+            f"out 2 {toggle} {large.hex()}": 10,
+            f"in {chance.choice([1, 2])}": 8,
+            f"in {chance.randrange(16)}": 2,
+            "lose": 5,
+            f"wait {chance.randrange(300)}": 5,
+        }
+        return chance.choices(list(weights), list(weights.values()))[0]
 
     def _accident(self) -> str:
         chance = self._chance
@@ -143,7 +145,7 @@ class TransferFuzzer:
             return f"sleep {chance.choice([1000, 2900, 3100, 6000])}"
         return f"unplug {chance.randrange(20000)}"
 
-    # -- playing them -------------------------------------------------------------------------------
+    # -- playing them ---------------------------------------------------------------------------------
 
     def play(self, case: str) -> None:
         """Do what a case says."""

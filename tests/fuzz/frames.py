@@ -168,7 +168,7 @@ class FrameFuzzer:
         expected.bad = 0
         expected.right.clear()
 
-    # -- making pieces --------------------------------------------------------------------------------
+    # -- making pieces -----------------------------------------------------------------------------
 
     def piece(self) -> bytes:
         """Bytes for one frame, or what takes its place; never one that moves the lathe."""

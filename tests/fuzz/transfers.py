@@ -81,7 +81,7 @@ class TransferFuzzer:
         """See :meth:`Target.check_alive`."""
         self._target.check_alive()
 
-    # -- making cases ---------------------------------------------------------------------------------
+    # -- making cases ------------------------------------------------------------------------------
 
     def case(self) -> str:
         """The next case."""
@@ -145,7 +145,7 @@ class TransferFuzzer:
             return f"sleep {chance.choice([1000, 2900, 3100, 6000])}"
         return f"unplug {chance.randrange(20000)}"
 
-    # -- playing them ---------------------------------------------------------------------------------
+    # -- playing them ------------------------------------------------------------------------------
 
     def play(self, case: str) -> None:
         """Do what a case says."""

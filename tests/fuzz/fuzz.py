@@ -11,6 +11,7 @@ import re
 import subprocess
 import sys
 import time
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from fuzz.frames import FrameFuzzer
@@ -116,12 +117,12 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args(argv)
     context = multiprocessing.get_context("spawn")
-    with context.Pool(2) as pool:
+    with ProcessPoolExecutor(2, mp_context=context) as pool:
         parts = [
-            pool.apply_async(fuzz_transfers, (arguments.transfers, arguments.seed)),
-            pool.apply_async(fuzz_frames, (arguments.frames, arguments.seed)),
+            pool.submit(fuzz_transfers, arguments.transfers, arguments.seed),
+            pool.submit(fuzz_frames, arguments.frames, arguments.seed),
         ]
-        outcomes = [part.get() for part in parts]
+        outcomes = [part.result() for part in parts]
     found: Outcome = {
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
         "seed": arguments.seed,

@@ -17,6 +17,7 @@ from pathlib import Path
 from fuzz.frames import FrameFuzzer
 from fuzz.target import Broken, Target
 from fuzz.transfers import TransferFuzzer
+from fuzz.unplugs import Unplugs
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "build" / "fuzz" / "fuzz.json"
@@ -24,6 +25,7 @@ PAGE = ROOT / "docs" / "benchmarks.md"
 MARKER = re.compile(r"(<!-- fuzz -->\n).*?(<!-- end of fuzz -->)", re.DOTALL)
 SLICE = 20_000
 MILLION = 1_000_000
+UNPLUGS = 500
 Outcome = dict[str, int | float | str]
 
 
@@ -71,6 +73,25 @@ def fuzz_frames(count: int, seed: int) -> Outcome:
     }
 
 
+def pull_cables(count: int, seed: int) -> Outcome:
+    """Pull the cable ``count`` times; as above."""
+    unplugs = Unplugs(seed)
+    broken = ""
+    try:
+        unplugs.upload(count * 3 // 10)
+        unplugs.status(count * 2 // 10)
+        unplugs.run(count - unplugs.moments)
+    except Broken as error:
+        broken = str(error)
+    return {
+        "usb_unplugs": unplugs.moments,
+        "usb_unplug_runs": unplugs.runs,
+        "usb_unplug_exact_runs": unplugs.exact_runs,
+        "usb_unplug_shift_cycles": unplugs.worst_cycles,
+        "broken": broken,
+    }
+
+
 def show(what: str, done: int, start: float) -> None:
     """Print how far it is, on a line that is overwritten on a terminal."""
     rate = done / (time.monotonic() - start)
@@ -81,6 +102,7 @@ def show(what: str, done: int, start: float) -> None:
 
 def fill(page: str, found: Outcome) -> str:
     """``page`` with the counts of a run."""
+    exact = f"{found['usb_unplug_exact_runs']} of {found['usb_unplug_runs']}"
     rows = [
         f"Run on {found['date']} with seed {found['seed']}, firmware of {found['commit']}.",
         "No hang, no reset, no motion, no write outside the RAM that well-formed requests make it",
@@ -92,7 +114,10 @@ def fill(page: str, found: Outcome) -> str:
         f"| bus resets, sleeps and pulled cables among them | {found['usb_fuzz_accidents']:,} |",
         f"| `frame_fuzz_frames` | {found['frame_fuzz_frames']:,} |",
         f"| of these right and answered | {found['frame_fuzz_right']:,} |",
-        f"| simulated time | {simulated(found):,.0f} s |",
+        f"| `usb_unplugs`: cable pulled in upload, status, run | {found['usb_unplugs']:,} |",
+        f"| runs with it: steps at the very cycles of a run without cable | {exact} |",
+        f"| largest shift of a step in the others | {found['usb_unplug_shift_cycles']} cycles |",
+        f"| simulated time, transfers and frames | {simulated(found):,.0f} s |",
     ]
     return MARKER.sub(lambda marks: f"{marks[1]}{chr(10).join(rows)}\n{marks[2]}", page)
 
@@ -114,6 +139,7 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="make fuzz", description=__doc__)
     parser.add_argument("--transfers", type=int, default=MILLION)
     parser.add_argument("--frames", type=int, default=MILLION)
+    parser.add_argument("--unplugs", type=int, default=UNPLUGS)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args(argv)
     context = multiprocessing.get_context("spawn")
@@ -121,6 +147,7 @@ def main(argv: list[str] | None = None) -> int:
         parts = [
             pool.submit(fuzz_transfers, arguments.transfers, arguments.seed),
             pool.submit(fuzz_frames, arguments.frames, arguments.seed),
+            pool.submit(pull_cables, arguments.unplugs, arguments.seed),
         ]
         outcomes = [part.result() for part in parts]
     found: Outcome = {
@@ -138,7 +165,8 @@ def main(argv: list[str] | None = None) -> int:
         print(f"{key:26} {value}")
     if found["broken"]:
         return 1
-    if arguments.transfers >= MILLION and arguments.frames >= MILLION:
+    asked = (arguments.transfers, arguments.frames, arguments.unplugs)
+    if all(count >= least for count, least in zip(asked, (MILLION, MILLION, UNPLUGS), strict=True)):
         PAGE.write_text(fill(PAGE.read_text(encoding="utf-8"), found), encoding="utf-8")
     return 0
 

@@ -10,6 +10,7 @@ from fuzz import frames, transfers
 from fuzz.frames import FrameFuzzer
 from fuzz.target import Broken, Target, frame
 from fuzz.transfers import TransferFuzzer
+from fuzz.unplugs import Unplugs
 
 TRANSFERS = 4000
 FRAMES = 8000
@@ -71,3 +72,12 @@ def test_a_frame_that_moves_the_lathe_would_be_seen() -> None:
     target.bench.host.wait(0.2)
     with pytest.raises(Broken, match="moved"):
         target.check()
+
+
+@on_a_new_chip
+def test_the_cable_pulled_at_random_moments_disturbs_nothing() -> None:
+    unplugs = Unplugs(seed=1)
+    unplugs.upload(12)
+    unplugs.status(12)
+    unplugs.run(16)
+    assert unplugs.moments >= 40

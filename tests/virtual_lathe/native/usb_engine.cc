@@ -256,7 +256,7 @@ void UsbEngine::write(unsigned address, unsigned value)
         mistake(text("write to read-only register 0x%03x", address));
         return;
     case UADDR:
-        if (value & 0x7F && value != granted_address_)
+        if (value & 0x7F && value != granted_address_ && !reset_seen_)
             mistake(
                 set_address_open_
                     ? "UADDR written before the status stage of SET_ADDRESS"

@@ -15,6 +15,7 @@ from tornillo.errors import (
 )
 from tornillo.lathe import Lathe
 from tornillo.machine import Machine
+from tornillo.part import Part
 from tornillo.protocol import Axis, SettingId
 from tornillo.status import Status
 from tornillo.stored import StoredPart
@@ -29,6 +30,7 @@ __all__ = [
     "LinkError",
     "Machine",
     "MachineError",
+    "Part",
     "PartError",
     "PortError",
     "SettingId",

@@ -23,6 +23,7 @@ from tornillo.protocol import (
 
 RECORD_HEAD_SIZE = 4
 CENTRE_UNIT = 256  # of one step, in the centres of arcs
+FLAG_INCH = 0x01  # in the flags of the header
 Record = ToolRecord | CutRecord | PauseRecord | ContourRecord | PlungeRecord
 RECORDS: dict[OperationType, type[Record]] = {
     OperationType.TOOL: ToolRecord,
@@ -118,6 +119,11 @@ class PartImage:
         """The records that are counted: what a person calls an operation."""
         return tuple(record for record in self.records if isinstance(record, OPERATIONS))
 
+    @property
+    def inch(self) -> bool:
+        """Whether the part was drawn in inch."""
+        return bool(self.header.flags & FLAG_INCH)
+
     def pack(self) -> bytes:
         """The bytes to upload.
 
@@ -125,6 +131,11 @@ class PartImage:
         first.
         """
         return IMAGE_HEADER.pack(*self.header) + b"".join(map(pack_record, self.records))
+
+    @property
+    def size(self) -> int:
+        """Bytes of the image, also of one whose numbers do not fit their fields."""
+        return IMAGE_HEADER.size + sum(map(_record_size, self.records))
 
     @classmethod
     def unpack(cls, data: bytes) -> "PartImage":
@@ -151,6 +162,13 @@ def record_type(record: Record) -> OperationType:
     return next(kind for kind, cls in RECORDS.items() if isinstance(record, cls))
 
 
+def _record_size(record: Record) -> int:
+    """The bytes that a record takes."""
+    kind = record_type(record)
+    tail = len(record[-1]) if kind in OPEN_TYPES and isinstance(record[-1], bytes) else 0
+    return OPERATION_RECORDS[kind].size + tail
+
+
 def pack_record(record: Record) -> bytes:
     """The bytes of one record."""
     kind = record_type(record)
@@ -172,8 +190,11 @@ def unpack_header(data: bytes) -> ImageHeader:
         raise ImageError(Refusal.LENGTH, 0) from error
 
 
-def unpack_record(data: bytes, at: int, position: int) -> tuple[Record, int]:
-    """The record at offset `at` and its size; raises ImageError for operation `position`."""
+def record_head(data: bytes, at: int, position: int) -> tuple[OperationType, int, int]:
+    """Type, kind and size of the record at offset `at`.
+
+    Raises ImageError for operation `position`.
+    """
     left = len(data) - at
     if left < RECORD_HEAD_SIZE:
         raise ImageError(Refusal.LENGTH, position)
@@ -181,12 +202,19 @@ def unpack_record(data: bytes, at: int, position: int) -> tuple[Record, int]:
     if not RECORD_HEAD_SIZE <= size <= left:
         raise ImageError(Refusal.LENGTH, position)
     try:
-        type_ = OperationType(code)
+        return OperationType(code), kind, size
     except ValueError as error:
         raise ImageError(Refusal.OPERATION_TYPE, position) from error
+
+
+def unpack_record(data: bytes, at: int, position: int) -> tuple[Record, int]:
+    """The record at offset `at` and its size; raises ImageError for operation `position`."""
+    type_, kind, size = record_head(data, at, position)
     layout = OPERATION_RECORDS[type_]
-    longest = layout.size + (MESSAGE_MAX if type_ is OperationType.PAUSE else left)
-    if size < layout.size or size > (longest if type_ in OPEN_TYPES else layout.size):
+    longest = layout.size
+    if type_ in OPEN_TYPES:
+        longest += MESSAGE_MAX if type_ is OperationType.PAUSE else len(data)
+    if not layout.size <= size <= longest:
         raise ImageError(Refusal.OPERATION_SIZE, position)
     fields = (kind, *layout.unpack_from(data, at)[3:])
     if type_ in OPEN_TYPES:

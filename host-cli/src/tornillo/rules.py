@@ -10,54 +10,74 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tornillo.image import (
+    FLAG_INCH,
+    OPERATIONS,
     ImageError,
-    Operation,
     PartImage,
-    operation_type,
+    Record,
+    record_head,
     unpack_header,
-    unpack_operation,
+    unpack_record,
 )
 from tornillo.machine import Machine
+from tornillo.material import Material
 from tornillo.protocol import (
     FEED_MIN,
     FEED_UNIT,
     IMAGE_FORMAT,
     IMAGE_HEADER,
-    OPERATION_RECORDS,
     OPERATIONS_MAX,
     PART_IMAGE_MAX,
     POSITION_MAX,
-    CylinderRecord,
+    SPRING_MAX,
+    ContourRecord,
+    CutRecord,
     ImageHeader,
+    OperationType,
+    PauseRecord,
+    PlungeRecord,
     Refusal,
+    ToolRecord,
 )
+from tornillo.rules_shape import Found, Ground, contour_rules, plunge_rules
 from tornillo.units import Scale
 
 NAME = re.compile(rb"[a-z0-9-]{1,16}\0*")
-FIELD_MAX = 0xFFFF
+TOOL_KIND_MAX = 15
+PAUSE_KIND_MAX = 1
+FIRST_TYPES = (OperationType.TOOL, OperationType.CUT)
 
 
 class Violation(NamedTuple):
     """A broken rule.
 
-    `operation` is 0 for the part as a whole, `key` the key of the part file it is about,
-    `detail` the numbers in words.
+    `operation` is 0 for the part as a whole, `record` the index of the record, -1 for the
+    header. `key` says what it is about: a key of the part file, or start.x, end.z and the like
+    of a contour. `detail` has the numbers in words.
     """
 
     refusal: Refusal
     operation: int
+    record: int
     key: str
     detail: str
 
 
 def check(image: PartImage, scale: Scale) -> Iterator[Violation]:
-    """Every rule that `image` breaks on the machine of `scale`, the chip's answer first."""
-    broken = list(_whole_part(image.header, scale))
+    """Every rule that `image` breaks on the machine of `scale`, the chip's answer first.
+
+    At most one for each contour and plunge.
+    """
+    broken = list(header_rules(image.header, len(image.operations), scale))
+    if image.size > PART_IMAGE_MAX:
+        detail = f"{image.size} bytes, at most {PART_IMAGE_MAX}"
+        yield Violation(Refusal.LENGTH, 0, -1, "operation", detail)
     yield from broken
     if any(violation.refusal is Refusal.STOCK for violation in broken):
         return
-    for position, operation in enumerate(image.operations, start=1):
-        yield from _operation(image, position, operation, scale)
+    judge = _Judge(image.header, scale)
+    for record in image.records:
+        yield from judge.rules(record)
 
 
 def verdict(data: bytes, machine: Machine) -> Violation | None:
@@ -67,48 +87,87 @@ def verdict(data: bytes, machine: Machine) -> Violation | None:
         if len(data) > PART_IMAGE_MAX:
             raise ImageError(Refusal.LENGTH, 0)
         header = unpack_header(data)
-        for violation in _whole_part(header, scale):
+        for violation in header_rules(header, header.operation_count, scale):
             return violation
-        operations: list[Operation] = []
-        at = IMAGE_HEADER.size
-        for position in range(1, header.operation_count + 1):
-            operations.append(unpack_operation(data, at, position))
-            at += OPERATION_RECORDS[operation_type(operations[-1])].size
-            image = PartImage(header, tuple(operations))
-            for violation in _operation(image, position, operations[-1], scale):
-                return violation
-        PartImage.unpack(data)
+        return _records_verdict(data, _Judge(header, scale))
     except ImageError as error:
-        return Violation(error.refusal, error.operation, "", "")
+        return Violation(error.refusal, error.operation, -1, "", "")
+
+
+def _records_verdict(data: bytes, judge: "_Judge") -> Violation | None:
+    """The first rule that a record of `data` breaks; raises ImageError for its structure."""
+    at = IMAGE_HEADER.size
+    while at < len(data):
+        kind, _, _ = record_head(data, at, judge.operation)
+        if judge.index < len(FIRST_TYPES) and kind is not FIRST_TYPES[judge.index]:
+            raise ImageError(Refusal.ORDER, judge.operation)
+        record, size = unpack_record(data, at, judge.operation)
+        for violation in judge.rules(record):
+            return violation
+        at += size
+    if judge.operation - 1 != judge.header.operation_count:
+        raise ImageError(Refusal.OPERATION_COUNT, 0)
     return None
 
 
-def _whole_part(header: ImageHeader, scale: Scale) -> Iterator[Violation]:
-    """The rules of the header, in the chip's order."""
+class _Judge:
+    """Goes through the records of a part in their order."""
+
+    def __init__(self, header: ImageHeader, scale: Scale) -> None:
+        """Before the first record."""
+        self.header = header
+        self.scale = scale
+        self.material = Material(header.stock_radius, header.stock_front)
+        self.tool: ToolRecord | None = None
+        self.index = 0
+        self.operation = 1
+
+    def rules(self, record: Record) -> Iterator[Violation]:
+        """The rules that the next record breaks, in the chip's order."""
+        for found in self._found(record):
+            yield Violation(found.refusal, self.operation, self.index, found.key, found.detail)
+        self.index += 1
+        self.operation += isinstance(record, OPERATIONS)
+
+    def _found(self, record: Record) -> Iterator[Found]:
+        """What is wrong with one record."""
+        if isinstance(record, ToolRecord):
+            self.tool = record
+            return _tool_rules(record, self.header, self.scale)
+        if isinstance(record, CutRecord):
+            return _cut_rules(record, self.header, self.scale)
+        if isinstance(record, PauseRecord):
+            return _pause_rules(record)
+        assert self.tool is not None  # a part begins with its tool
+        ground = Ground(self.header, self.scale, self.tool, self.material)
+        return self._shape_rules(record, ground)
+
+    def _shape_rules(self, record: ContourRecord | PlungeRecord, ground: Ground) -> Iterator[Found]:
+        """What is wrong with a cut; a good one is taken from the material."""
+        if isinstance(record, ContourRecord):
+            return contour_rules(record, ground)
+        return plunge_rules(record, ground)
+
+
+def header_rules(header: ImageHeader, count: int, scale: Scale) -> Iterator[Violation]:
+    """The rules of the header with `count` operations, in the chip's order."""
 
     def broken(refusal: Refusal, key: str, detail: str) -> Violation:
-        return Violation(refusal, 0, key, detail)
+        return Violation(refusal, 0, -1, key, detail)
 
     machine = scale.machine
-    if header.format != IMAGE_FORMAT or header.flags or header.reserved or header.reserved_end:
+    if header.format != IMAGE_FORMAT or header.flags & ~FLAG_INCH or header.reserved:
         yield broken(Refusal.FORMAT, "", f"format {header.format}")
     if not NAME.fullmatch(header.name):
         yield broken(Refusal.NAME, "part.name", repr(header.name.decode("latin-1")))
     if (header.step_x_nm, header.step_z_nm) != (machine.step_x_nm, machine.step_z_nm):
         yield broken(Refusal.STEP_SIZE, "", f"{header.step_x_nm} and {header.step_z_nm} nm")
     yield from (broken(Refusal.STOCK, *found) for found in _stock(header, scale))
-    if not 1 <= header.operation_count <= OPERATIONS_MAX:
-        yield broken(Refusal.OPERATION_COUNT, "operation", f"{header.operation_count} operations")
-    if not 1 <= header.depth_of_cut <= min(header.stock_radius, FIELD_MAX):
-        detail = f"{header.depth_of_cut} steps, the stock has {header.stock_radius}"
-        yield broken(Refusal.DEPTH_OF_CUT, "cut.depth_of_cut", detail)
-    if not 0 <= header.finish_allowance <= header.depth_of_cut:
-        detail = f"{header.finish_allowance} steps, the depth of cut is {header.depth_of_cut}"
-        yield broken(Refusal.ALLOWANCE, "cut.finish_allowance", detail)
-    yield from (broken(Refusal.FEED, *found) for found in _feeds(header, scale))
-    if not 1 <= header.retract <= FIELD_MAX:
+    if not 1 <= count <= OPERATIONS_MAX:
+        yield broken(Refusal.OPERATION_COUNT, "operation", f"{count} operations")
+    if not 1 <= header.retract <= POSITION_MAX:
         yield broken(Refusal.RETRACT, "cut.retract", f"{header.retract} steps")
-    yield from (broken(Refusal.OUTSIDE_TRAVEL, *found) for found in _stock_travel(header, scale))
+    yield from (broken(Refusal.OUTSIDE_TRAVEL, *found) for found in _clear(header, scale, 0, 0))
 
 
 def _stock(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]]:
@@ -117,25 +176,18 @@ def _stock(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]]:
         yield "stock.diameter", scale.show_diameter(header.stock_radius)
     if not 1 <= header.stock_length <= POSITION_MAX:
         yield "stock.length", f"length {scale.show(scale.length(header.stock_length))}"
-    if not 0 <= header.stock_front <= POSITION_MAX:
+    elif not 0 <= header.stock_front <= POSITION_MAX - header.stock_length:
         yield "stock.allowance", f"allowance {scale.show(scale.length(header.stock_front))}"
 
 
-def _feeds(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]]:
-    """Feeds outside the machine's range."""
-    fastest = scale.machine.max_rate * FEED_UNIT
-    for key, feed in (("cut.feed", header.feed), ("cut.finish_feed", header.finish_feed)):
-        if not FEED_MIN <= feed <= fastest:
-            feed_range = f"{scale.show_feed(FEED_MIN)} to {scale.show_feed(fastest)}"
-            yield key, f"{scale.show_feed(feed)}, the machine feeds {feed_range}"
-
-
-def _stock_travel(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]]:
-    """Where the tool cannot get clear of the stock."""
+def _clear(
+    header: ImageHeader, scale: Scale, offset_x: int, offset_z: int
+) -> Iterator[tuple[str, str]]:
+    """Where a tool with these offsets cannot get clear of the stock."""
     machine = scale.machine
-    room_x, room_z = -machine.zero_x, -machine.zero_z
+    room_x, room_z = -machine.zero_x - offset_x, -machine.zero_z - offset_z
     need_x = header.stock_radius + header.retract
-    need_z = header.stock_front + header.retract
+    need_z = header.stock_front + 2 * header.retract
     if need_x > room_x:
         yield (
             "stock.diameter",
@@ -150,99 +202,45 @@ def _stock_travel(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]
         )
 
 
-def _operation(
-    image: PartImage, position: int, operation: Operation, scale: Scale
-) -> Iterator[Violation]:
-    """The rules of one operation, in the chip's order."""
-    earlier = image.operations[: position - 1]
-    rules = (
-        (Refusal.OUTSIDE_STOCK, _outside_stock(image.header, operation, scale)),
-        (Refusal.OUTSIDE_TRAVEL, _outside_travel(operation, scale)),
-        (Refusal.EMPTY_CUT, _empty_cut(image.header, operation, scale)),
-        (Refusal.BLOCKED, _blocked(image.header, operation, earlier, scale)),
-    )
-    for refusal, found in rules:
-        for key, detail in found:
-            yield Violation(refusal, position, key, detail)
+def _tool_rules(tool: ToolRecord, header: ImageHeader, scale: Scale) -> Iterator[Found]:
+    """The rules of TOOL."""
+    if not 0 <= tool.kind <= TOOL_KIND_MAX:
+        yield Found(Refusal.FORMAT, "tool", f"tool number {tool.kind}")
+    if tool.offset_x or tool.offset_z:
+        for _, detail in _clear(header, scale, tool.offset_x, tool.offset_z):
+            yield Found(Refusal.OUTSIDE_TRAVEL, "offset", detail)
 
 
-def _reach(operation: Operation) -> tuple[int, int, str]:
-    """Smallest radius, z nearest to the chuck, and the key of the latter."""
-    if isinstance(operation, CylinderRecord):
-        return operation.x, operation.z_end, "z"
-    return operation.x_inner, operation.z, "z"
+def _pause_rules(record: PauseRecord) -> Iterator[Found]:
+    """The rules of PAUSE."""
+    if not 0 <= record.kind <= PAUSE_KIND_MAX:
+        yield Found(Refusal.FORMAT, "message", f"kind {record.kind}")
 
 
-def _outside_stock(
-    header: ImageHeader, operation: Operation, scale: Scale
-) -> Iterator[tuple[str, str]]:
-    """Ends that are not in the stock, or too near to the chuck."""
-    x, z, key = _reach(operation)
-    if not 0 <= x <= header.stock_radius:
-        detail = (
-            f"{scale.show_diameter(x)}, the stock has {scale.show_diameter(header.stock_radius)}"
-        )
-        yield "diameter", detail
-    if isinstance(operation, CylinderRecord) and operation.z_start > header.stock_front:
-        yield (
-            key,
-            f"starts at {scale.show_z(operation.z_start)}, "
-            f"the stock begins at {scale.show_z(header.stock_front)}",
-        )
-    nearest = header.retract - header.stock_length
-    if z < nearest:
-        yield (
-            key,
-            f"ends at {scale.show_z(z)}, one retract in front of the chuck is "
-            f"{scale.show_z(nearest)}",
-        )
+def _cut_rules(cut: CutRecord, header: ImageHeader, scale: Scale) -> Iterator[Found]:
+    """The rules of CUT."""
+    if not 0 <= cut.kind <= SPRING_MAX:
+        yield Found(Refusal.FORMAT, "spring_passes", f"{cut.kind} spring passes")
+    if not 1 <= cut.depth_of_cut <= header.stock_radius:
+        detail = f"{cut.depth_of_cut} steps, the stock has {header.stock_radius}"
+        yield Found(Refusal.DEPTH_OF_CUT, "depth_of_cut", detail)
+    if cut.finish_allowance > cut.depth_of_cut:
+        detail = f"{cut.finish_allowance} steps, the depth of cut is {cut.depth_of_cut}"
+        yield Found(Refusal.ALLOWANCE, "finish_allowance", detail)
+    fastest = scale.machine.max_rate * FEED_UNIT
+    for key, feed in (("feed", cut.feed), ("finish_feed", cut.finish_feed)):
+        if not FEED_MIN <= feed <= fastest:
+            feed_range = f"{scale.show_feed(FEED_MIN)} to {scale.show_feed(fastest)}"
+            detail = f"{scale.show_feed(feed)}, the machine feeds {feed_range}"
+            yield Found(Refusal.FEED, key, detail)
+    yield from _spindle(cut.spindle, scale.machine)
 
 
-def _empty_cut(
-    header: ImageHeader, operation: Operation, scale: Scale
-) -> Iterator[tuple[str, str]]:
-    """Operations with nothing to cut."""
-    if isinstance(operation, CylinderRecord):
-        if operation.z_start <= operation.z_end:
-            yield "z", f"from {scale.show_z(operation.z_start)} to {scale.show_z(operation.z_end)}"
-        x = operation.x
-    else:
-        if operation.z >= header.stock_front:
-            front = scale.show_z(header.stock_front)
-            yield "z", f"{scale.show_z(operation.z)}, the stock begins at {front}"
-        x = operation.x_inner
-    if x == header.stock_radius:
-        yield "diameter", f"{scale.show_diameter(x)} is that of the stock"
-
-
-def _outside_travel(operation: Operation, scale: Scale) -> Iterator[tuple[str, str]]:
-    """Ends the slides cannot reach."""
-    machine = scale.machine
-    x, z, key = _reach(operation)
-    least_x = -machine.travel_x - machine.zero_x
-    least_z = -machine.travel_z - machine.zero_z
-    if x < least_x:
-        detail = f"{scale.show_diameter(x)}, the slide ends at {scale.show_diameter(least_x)}"
-        yield "diameter", detail
-    if z < least_z:
-        yield key, f"ends at {scale.show_z(z)}, the slide ends at {scale.show_z(least_z)}"
-
-
-def _blocked(
-    header: ImageHeader, operation: Operation, earlier: tuple[Operation, ...], scale: Scale
-) -> Iterator[tuple[str, str]]:
-    """Cylinders that start behind material that is higher than they are.
-
-    Everything in front of an operation's end is at most as large as the operation, because it
-    was itself not blocked. So one earlier operation that ends at or behind this start and is
-    not larger is enough, and needed.
-    """
-    if not isinstance(operation, CylinderRecord) or operation.z_start >= header.stock_front:
+def _spindle(speed: int, machine: Machine) -> Iterator[Found]:
+    """A spindle speed that the machine does not have."""
+    slowest, fastest = machine.spindle_min_rpm, machine.spindle_max_rpm
+    if not speed or slowest is None or fastest is None:
         return
-    reaches = (_reach(other) for other in earlier)
-    if not any(z <= operation.z_start and x <= operation.x for x, z, _ in reaches):
-        yield (
-            "z",
-            f"starts at {scale.show_z(operation.z_start)}, and in front of it something larger "
-            f"than {scale.show_diameter(operation.x)} stands",
-        )
+    if not slowest <= speed <= fastest:
+        detail = f"{speed} rev/min, the machine turns {slowest} to {fastest}"
+        yield Found(Refusal.SPINDLE, "spindle", detail)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A TOML text that knows its lines, read key by key with checks that teach.
 
-tomllib gives values without lines; `line_numbers` finds the lines again, so that every
-refusal can name the line to correct.
+Every refusal names the line to correct.
 """
 
 import difflib
@@ -12,33 +11,12 @@ import tomllib
 from collections.abc import Mapping
 from typing import NoReturn
 
+from tornillo.contour import Point
 from tornillo.errors import PartError
+from tornillo.toml_lines import Place, line_numbers
 
-Place = tuple[str | int, ...]
-_HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")
-_KEY = re.compile(r"\s*([\w-]+)\s*[.=]")
-_NOT_BRACKETS = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
+NUMBER_MAX = 1e6
 _AT_LINE = re.compile(r" \(at line (\d+), column \d+\)| \(at end of document\)")
-
-
-def line_numbers(text: str) -> dict[Place, int]:
-    """The line, from 1, of every table and key; array tables are counted from 0."""
-    places: dict[Place, int] = {}
-    table: Place = ()
-    depth = 0
-    for number, line in enumerate(text.splitlines(), start=1):
-        if depth == 0 and (header := _HEADER.match(line)):
-            table = tuple(header[2].split("."))
-            if header[1] == "[[":
-                count = sum(place[:-1] == table for place in places if isinstance(place[-1], int))
-                table = (*table, count)
-            places[table] = number
-            continue
-        if depth == 0 and (key := _KEY.match(line)):
-            places.setdefault((*table, key[1]), number)
-        bare = _NOT_BRACKETS.sub("", line)
-        depth += sum(bare.count(mark) for mark in "[{") - sum(bare.count(mark) for mark in "]}")
-    return places
 
 
 class Source:
@@ -77,7 +55,9 @@ class Source:
 class Table:
     """One table of a part file; every key that is read is known, the others are refused."""
 
-    def __init__(self, source: Source, place: Place, values: object, title: str) -> None:
+    def __init__(
+        self, source: Source, place: Place, values: object, title: str, remedy: str = ""
+    ) -> None:
         """Look at `values` found at `place`; `title` names it in messages.
 
         Raises PartError when it is not a table.
@@ -86,7 +66,9 @@ class Table:
         self.place = place
         self.title = title
         if not isinstance(values, Mapping):
-            self.refuse("", f"{title} must be a table", f"write {title} on a line of its own")
+            self.refuse(
+                "", f"{title} must be a table", remedy or f"write {title} on a line of its own"
+            )
         self._values = dict(values)
         self._known: list[str] = []
 
@@ -99,29 +81,100 @@ class Table:
         """The table `key` inside this one, which must be there."""
         return Table(self.source, (*self.place, key), self._take(key, f"[{key}]"), f"[{key}]")
 
-    def tables(self, key: str) -> "list[object]":
-        """The array of tables `key`, which must have an entry."""
+    def tables(self, key: str, needed: bool = True) -> "list[object]":
+        """The array of tables `key`, which must have an entry; empty when it may be missing."""
+        if not needed and not self.has(key):
+            return []
         found = self._take(key, f"[[{key}]]")
         if not isinstance(found, list) or not found:
             self.refuse(key, f"{key} must be written as [[{key}]]", "use two square brackets")
         return list(found)
 
-    def text(self, key: str, choices: tuple[str, ...] = ()) -> str:
-        """The string `key`, one of `choices` when there are any."""
+    def has(self, key: str) -> bool:
+        """Whether `key` is there; it is known from now on."""
+        self._known.append(key)
+        return key in self._values
+
+    def text(self, key: str, choices: tuple[str, ...] = (), default: str | None = None) -> str:
+        """The string `key`, one of `choices` when there are any; `default` when it is missing."""
+        if default is not None and not self.has(key):
+            return default
         value = self._take(key, f'{key} = "{choices[0] if choices else "..."}"')
         if not isinstance(value, str):
             self.refuse(key, f"{self.title}: {key} must be a text", f'write {key} = "{value}"')
-        if choices and value not in choices:
+        if choices:
+            self.choice(key, value, choices)
+        return value
+
+    def choice(self, key: str, value: str, choices: tuple[str, ...]) -> None:
+        """Refuse a `value` of `key` that is none of `choices`, naming the nearest one."""
+        if value not in choices:
             remedy = _nearest(value, choices) or f"use one of: {', '.join(choices)}"
             self.refuse(key, f'{self.title}: {key} cannot be "{value}"', remedy)
-        return value
 
     def number(self, key: str, default: float | None = None) -> float:
         """The finite number `key`, or `default` when it is missing."""
-        if default is not None and key not in self._values:
-            self._known.append(key)
+        if default is not None and not self.has(key):
             return default
         return self._number(key, self._take(key, f"{key} = 1.0"))
+
+    def positive(self, key: str, default: float | None = None) -> float:
+        """A number above 0 (or equal to its default) and below 1e6."""
+        value = self.number(key, default)
+        if value != default and not 0 < value < NUMBER_MAX:
+            self.refuse(key, f"{self.title}: {key} cannot be {value:g}", "give a number above 0")
+        return value
+
+    def within(self, key: str, low: float, high: float, default: float) -> float:
+        """A number from `low` to `high`, or `default` when it is missing."""
+        value = self.number(key, default)
+        if not low <= value <= high:
+            self.refuse(
+                key,
+                f"{self.title}: {key} cannot be {value:g}",
+                f"give a number from {low:g} to {high:g}",
+            )
+        return value
+
+    def whole(self, key: str, low: int, high: int, default: int) -> int:
+        """A whole number from `low` to `high`, or `default` when it is missing."""
+        value = self.within(key, low, high, default)
+        if value != int(value):
+            self.refuse(key, f"{self.title}: {key} cannot be {value:g}", "give a whole number")
+        return int(value)
+
+    def point(self, key: str) -> Point:
+        """The place `key = { z = ..., diameter = ... }`, with its radius."""
+        inner = Table(
+            self.source,
+            (*self.place, key),
+            self._take(key, f"{key} = {{ z = 0.0, diameter = 10.0 }}"),
+            f"{self.title}: {key}",
+            f"write {key} = {{ z = 0.0, diameter = 10.0 }}",
+        )
+        place = Point(inner.number("z"), inner.number("diameter") / 2)
+        inner.finish()
+        return place
+
+    def items(self, key: str, least: int) -> "list[Table]":
+        """The tables in the list `key`, at least `least` of them."""
+        value = self._take(key, f"{key} = [{{ z = 0.0, diameter = 10.0 }}]")
+        if not isinstance(value, list) or len(value) < least:
+            self.refuse(
+                key,
+                f"{self.title}: {key} must be a list of at least {least} points",
+                f"write {key} = [{{ z = 0.0, diameter = 10.0 }}, ...]",
+            )
+        return [
+            Table(
+                self.source,
+                (*self.place, key, number),
+                item,
+                f"{self.title}, point {number + 1}",
+                "write it as { z = 0.0, diameter = 10.0 }",
+            )
+            for number, item in enumerate(value)
+        ]
 
     def pair(self, key: str) -> tuple[float, float]:
         """The two finite numbers `key = [first, second]`."""

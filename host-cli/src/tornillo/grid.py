@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Contours on the grid of whole steps: lines and arcs as the chip interpolates them.
+
+End points are rounded to the grid. The centre of an arc is fitted again, so that its circle
+leads from the rounded start through the rounded end and deviates as little as possible in
+between; it has 1/256 step. Where one circle does not do (steps of different size in X and Z,
+radii that the chip cannot count), several arcs or lines follow the curve.
+"""
+
+import math
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from tornillo.contour import Element, Line, Point
+from tornillo.image import CENTRE_UNIT, Segment, SegmentKind
+from tornillo.protocol import RADIUS_MAX
+from tornillo.rules_shape import arc_exists
+
+#: Steps that an arc may stand above its chord and still be a line.
+FLAT = 0.25
+#: Steps that a fitted arc may be away from the true curve, its rounded ends left out.
+CLOSE = 0.25
+DEEPEST = 8
+CENTRE_MAX = (1 << 23) - 1
+SAMPLES = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
+#: How far, in steps, the centre is moved along the bisector until the chip accepts the arc.
+SHIFTS = tuple(
+    sign * number / 16 for number in range(33) for sign in ((1,) if number == 0 else (1, -1))
+)
+
+
+class Grid(NamedTuple):
+    """Steps per unit of the part file along and across."""
+
+    z: float
+    x: float
+
+    def place(self, point: Point) -> Point:
+        """A place in steps, not rounded."""
+        return Point(point.z * self.z, point.x * self.x)
+
+    def rounded(self, point: Point) -> tuple[int, int]:
+        """(z, x) in whole steps."""
+        return round(point.z * self.z), round(point.x * self.x)
+
+
+def path_segments(
+    path: list[Element], grid: Grid, exact: bool = False
+) -> tuple[tuple[int, int], tuple[Segment, ...]]:
+    """Start (z, x) and segments of a path.
+
+    `exact`: the path comes from an image, so that the centres of its arcs are kept.
+    """
+    start = grid.rounded(path[0].start)
+    at = start
+    segments: list[Segment] = []
+    for element in path:
+        for segment in _segments(element, grid, at, exact):
+            segments.append(segment)
+            at = at[0] + segment.dz, at[1] + segment.dx
+    return start, tuple(segments)
+
+
+def _segments(element: Element, grid: Grid, at: tuple[int, int], exact: bool) -> Iterator[Segment]:
+    """One piece of a path, from where the one before has ended."""
+    if isinstance(element, Line):
+        yield from _line(at, grid.rounded(element.end))
+        return
+    if exact:
+        yield _segment(at, grid.rounded(element.end), grid.place(element.centre), element.convex)
+        return
+    curve = element.at
+
+    def place(part: float) -> Point:
+        return grid.place(curve(part))
+
+    yield from _arc(_Curve(place, element.convex), (0.0, 1.0), at, 0)
+
+
+def _line(start: tuple[int, int], end: tuple[int, int]) -> Iterator[Segment]:
+    """A line, unless it has no length."""
+    if start != end:
+        yield Segment(SegmentKind.LINE, end[0] - start[0], end[1] - start[1])
+
+
+class _Curve(NamedTuple):
+    """A bow in steps, by the part of its length."""
+
+    at: Callable[[float], Point]
+    convex: bool
+
+
+def _arc(
+    curve: _Curve, span: tuple[float, float], start: tuple[int, int], depth: int
+) -> Iterator[Segment]:
+    """Arcs along `span` of a curve, from the rounded `start`."""
+    low, high = span
+    last = curve.at(high)
+    end = round(last.z), round(last.x)
+    middle = curve.at((low + high) / 2)
+    if _bow(Point(*start), Point(*end), middle) < FLAT and (
+        _bow(curve.at(low), last, middle) < 2 * FLAT
+    ):
+        yield from _line(start, end)
+        return
+    fitted = _fit(curve, span, start, end)
+    if fitted is not None:
+        yield fitted
+    elif depth == DEEPEST:
+        yield from _line(start, end)
+    else:
+        half = (low + high) / 2
+        at = start
+        for part in ((low, half), (half, high)):
+            for segment in _arc(curve, part, at, depth + 1):
+                yield segment
+                at = at[0] + segment.dz, at[1] + segment.dx
+
+
+def _bow(start: Point, end: Point, middle: Point) -> float:
+    """How far `middle` is from the chord, in steps; infinite when there is no chord in z."""
+    chord = end.minus(start)
+    if chord.length == 0:
+        return middle.minus(start).length
+    return abs(chord.cross(middle.minus(start))) / chord.length
+
+
+def _fit(
+    curve: _Curve, span: tuple[float, float], start: tuple[int, int], end: tuple[int, int]
+) -> Segment | None:
+    """The one arc along `span`, or None when no circle does."""
+    if end[0] >= start[0]:
+        return None
+    low, high = span
+    if not _circular(curve, span):
+        return None
+    best = _centre(Point(*start), Point(*end), curve.at((low + high) / 2), curve.convex)
+    if best is None:
+        return None
+    centre, normal = best
+    for shift in SHIFTS:
+        segment = _segment(start, end, centre.plus(normal, shift), curve.convex)
+        if max(abs(segment.cz), abs(segment.cx)) <= CENTRE_MAX and arc_exists(segment):
+            return segment
+    return None
+
+
+def _centre(start: Point, end: Point, middle: Point, convex: bool) -> tuple[Point, Point] | None:
+    """Centre of the circle through both ends, as high as `middle`, and the way to the tool."""
+    normal = end.minus(start).unit.normal
+    half = end.minus(start).length / 2
+    halfway = Point((start.z + end.z) / 2, (start.x + end.x) / 2)
+    side = 1 if convex else -1
+    bow = middle.minus(halfway).dot(normal) * side
+    if bow <= 0:
+        return None
+    radius = (bow * bow + half * half) / (2 * bow)
+    if radius > RADIUS_MAX:
+        return None
+    return halfway.plus(normal, side * (bow - radius)), normal
+
+
+def _circular(curve: _Curve, span: tuple[float, float]) -> bool:
+    """Whether a circle through ends and middle follows the true curve closely enough."""
+    low, high = span
+    found = _centre(curve.at(low), curve.at(high), curve.at((low + high) / 2), curve.convex)
+    if found is None:
+        return False
+    centre, _ = found
+    radius = centre.minus(curve.at(low)).length
+    return all(
+        abs(centre.minus(curve.at(low + (high - low) * part)).length - radius) <= CLOSE
+        for part in SAMPLES
+    )
+
+
+def _segment(start: tuple[int, int], end: tuple[int, int], centre: Point, convex: bool) -> Segment:
+    """The segment with its centre in 1/256 step."""
+    return Segment(
+        SegmentKind.CONVEX if convex else SegmentKind.CONCAVE,
+        end[0] - start[0],
+        end[1] - start[1],
+        math.floor((centre.z - start[0]) * CENTRE_UNIT + 0.5),
+        math.floor((centre.x - start[1]) * CENTRE_UNIT + 0.5),
+    )

@@ -1,0 +1,260 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The rules of contours and plunges, as the chip applies them and in its order."""
+
+from collections.abc import Iterator
+from math import atan, degrees, isqrt
+from typing import NamedTuple
+
+from tornillo.image import Segment, SegmentKind, unpack_segments
+from tornillo.material import (
+    Chain,
+    Material,
+    Sub,
+    chain_of,
+    pieces,
+    plunge_chain,
+    rounded_centre,
+)
+from tornillo.protocol import (
+    CONTOUR_FACING,
+    CONTOUR_KIND,
+    RADIUS_MAX,
+    SLOPE_ANY,
+    SLOPE_UNIT,
+    ContourRecord,
+    ImageHeader,
+    PlungeRecord,
+    Refusal,
+    ToolRecord,
+)
+from tornillo.units import Scale
+
+CONTOUR_KIND_MAX = 4
+PLUNGE_KIND_MAX = 1
+RADIUS_MIN = 2
+
+
+class Found(NamedTuple):
+    """A broken rule of one record: what it is about, and the numbers in words."""
+
+    refusal: Refusal
+    key: str
+    detail: str
+
+
+class Ground(NamedTuple):
+    """What a cut is judged by: the part, the machine, the tool and what still stands."""
+
+    header: ImageHeader
+    scale: Scale
+    tool: ToolRecord
+    material: Material
+
+    @property
+    def nearest(self) -> int:
+        """The smallest z: one retract in front of the chuck."""
+        return self.header.retract - self.header.stock_length
+
+    @property
+    def foremost(self) -> int:
+        """The largest z: one retract in front of the raw face."""
+        return self.header.stock_front + self.header.retract
+
+    def outside(self, z: int, x: int, at: str, highest: bool = True) -> Iterator[Found]:
+        """The rules of a place; `at` names it, `highest`: x has an upper bound."""
+        header, scale = self.header, self.scale
+        if x < -self.tool.below or (highest and x > header.stock_radius):
+            limit = scale.show_diameter(header.stock_radius)
+            detail = f"{scale.show_diameter(x)}, the stock has {limit}"
+            yield Found(Refusal.OUTSIDE_STOCK, f"{at}.x", detail)
+        if z < self.nearest:
+            detail = (
+                f"{scale.show_z(z)}, one retract in front of the chuck is "
+                f"{scale.show_z(self.nearest)}"
+            )
+            yield Found(Refusal.OUTSIDE_STOCK, f"{at}.z", detail)
+        machine = scale.machine
+        least_x = -machine.travel_x - machine.zero_x - self.tool.offset_x
+        least_z = -machine.travel_z - machine.zero_z - self.tool.offset_z
+        if x < least_x:
+            detail = f"{scale.show_diameter(x)}, the slide ends at {scale.show_diameter(least_x)}"
+            yield Found(Refusal.OUTSIDE_TRAVEL, f"{at}.x", detail)
+        if z < least_z:
+            detail = f"{scale.show_z(z)}, the slide ends at {scale.show_z(least_z)}"
+            yield Found(Refusal.OUTSIDE_TRAVEL, f"{at}.z", detail)
+
+    def in_front(self, z: int, at: str) -> Iterator[Found]:
+        """The rule of places in front of the part."""
+        if z > self.foremost:
+            scale = self.scale
+            detail = (
+                f"{scale.show_z(z)}, one retract in front of the stock is "
+                f"{scale.show_z(self.foremost)}"
+            )
+            yield Found(Refusal.OUTSIDE_STOCK, f"{at}.z", detail)
+
+
+def contour_rules(record: ContourRecord, ground: Ground) -> Iterator[Found]:
+    """The first rule that a contour breaks; a good one is cut from the material of `ground`."""
+    segments: list[Segment] = []
+    for found in _contour_rules(record, ground, segments):
+        yield found
+        return
+    facing = bool(record.kind & CONTOUR_FACING)
+    ground.material.cut(chain_of(record.z, record.x, segments, facing))
+
+
+def _contour_rules(
+    record: ContourRecord, ground: Ground, segments: list[Segment]
+) -> Iterator[Found]:
+    """The rules of a contour in order; only the first one means something.
+
+    Fills `segments` with those of the record.
+    """
+    kind, known = record.kind & CONTOUR_KIND, CONTOUR_KIND | CONTOUR_FACING
+    if kind > CONTOUR_KIND_MAX or record.kind & ~known:
+        yield Found(Refusal.FORMAT, "", f"kind {record.kind}")
+    if ground.tool.width:
+        yield Found(Refusal.TOOL, "tool", "a tool with a width cuts grooves only")
+    yield from _start_rules(record, ground)
+    facing = bool(record.kind & CONTOUR_FACING)
+    z, x = record.z, record.x
+    try:
+        for segment in unpack_segments(record.segments):
+            yield from _segment_rules(z, x, segment, facing, ground)
+            z, x = z + segment.dz, x + segment.dx
+            segments.append(segment)
+    except ValueError as error:
+        yield Found(Refusal.OPERATION_SIZE, "", str(error))
+    if not segments:
+        yield Found(Refusal.OPERATION_SIZE, "", "no segment")
+    yield from _chain_rules(chain_of(record.z, record.x, segments, facing), ground)
+
+
+def _start_rules(record: ContourRecord, ground: Ground) -> Iterator[Found]:
+    """The start of a contour, all of OUTSIDE_STOCK before OUTSIDE_TRAVEL."""
+    found = [*ground.in_front(record.z, "start"), *ground.outside(record.z, record.x, "start")]
+    yield from _in_order(found)
+
+
+def _in_order(found: list[Found]) -> list[Found]:
+    """What lies outside the stock before what lies outside the travel."""
+    return sorted(found, key=lambda one: one.refusal is Refusal.OUTSIDE_TRAVEL)
+
+
+def _segment_rules(
+    z: int, x: int, segment: Segment, facing: bool, ground: Ground
+) -> Iterator[Found]:
+    """The rules of one segment that starts at (z, x)."""
+    scale = ground.scale
+    here = f"{scale.show_z(z)}, {scale.show_diameter(x)}"
+    if segment.dz > 0 or (facing and segment.dx < 0):
+        way = "z grows" if segment.dz > 0 else "the diameter gets smaller"
+        yield Found(Refusal.DIRECTION, "end.z", f"{way} behind {here}")
+    if segment.dz == 0 and segment.dx == 0:
+        yield Found(Refusal.EMPTY_CUT, "end.z", f"a piece without length at {here}")
+    yield from _in_order([*ground.outside(z + segment.dz, x + segment.dx, "end")])
+    subs = pieces(z, x, segment)
+    if segment.kind is not SegmentKind.LINE:
+        if not arc_exists(segment):
+            yield Found(Refusal.ARC, "end.x", f"from {here}")
+        if len(subs) > 1:
+            yield from _in_order([*ground.outside(subs[0].ze, subs[0].xe, "end")])
+    yield from _edge_rules(segment, subs, ground)
+
+
+def arc_exists(segment: Segment) -> bool:
+    """Whether an arc leads from its start to its end in whole steps, without running back."""
+    crz, crx = rounded_centre(segment)
+    square = crz * crz + crx * crx
+    radius = isqrt(square)
+    ez, ex = segment.dz - crz, segment.dx - crx
+    if not RADIUS_MIN <= radius <= RADIUS_MAX:
+        return False
+    if abs(ez * ez + ex * ex - square) > 2 * radius:
+        return False
+    if segment.kind is SegmentKind.CONVEX:
+        return crx <= 0 <= ex
+    return ex <= 0 <= crx
+
+
+def slopes(segment: Segment) -> Iterator[tuple[bool, int, int]]:
+    """(falling, climb, run) of the steepest places of a segment, climb not negative."""
+    if segment.kind is SegmentKind.LINE:
+        if segment.dx:
+            yield segment.dx < 0, abs(segment.dx), -segment.dz
+        return
+    crz, crx = rounded_centre(segment)
+    convex = segment.kind is SegmentKind.CONVEX
+    for ez, ex in ((-crz, -crx), (segment.dz - crz, segment.dx - crx)):
+        if ez:
+            yield (ez < 0) is convex, abs(ez), abs(ex)
+
+
+def _edge_rules(segment: Segment, subs: tuple[Sub, ...], ground: Ground) -> Iterator[Found]:
+    """Where the edges of the tool would cut into the work."""
+    tool, scale = ground.tool, ground.scale
+    for falling, climb, run in slopes(segment):
+        limit = tool.back if falling else tool.front
+        if limit == SLOPE_ANY or climb * SLOPE_UNIT <= limit * run:
+            continue
+        angle = degrees(atan(climb / run)) if run else 90.0
+        follows = degrees(atan(limit / SLOPE_UNIT))
+        way = "falls" if falling else "rises"
+        yield Found(
+            Refusal.BACK_EDGE if falling else Refusal.FRONT_EDGE,
+            "end.x",
+            f"between {scale.show_z(subs[0].zs)} and {scale.show_z(subs[-1].ze)} the contour "
+            f"{way} with {angle:.1f} degrees, the tool follows {follows:.1f}",
+        )
+
+
+def _chain_rules(chain: Chain, ground: Ground) -> Iterator[Found]:
+    """The rules of a contour as a whole."""
+    header, scale = ground.header, ground.scale
+    if chain.facing:
+        if chain.z_end >= header.stock_front:
+            front = scale.show_z(header.stock_front)
+            detail = f"{scale.show_z(chain.z_end)}, the stock begins at {front}"
+            yield Found(Refusal.EMPTY_CUT, "end.z", detail)
+        return
+    if chain.z_end == chain.z:
+        detail = f"it starts and ends at {scale.show_z(chain.z)}"
+        yield Found(Refusal.EMPTY_CUT, "end.z", detail)
+    if chain.lowest >= header.stock_radius:
+        detail = f"{scale.show_diameter(chain.lowest)} is that of the stock"
+        yield Found(Refusal.EMPTY_CUT, "end.x", detail)
+    if ground.tool.back != SLOPE_ANY and (ground.material.free_end(chain.x, chain.z + 1) > chain.z):
+        detail = (
+            f"starts at {scale.show_z(chain.z)}, and in front of it something larger than "
+            f"{scale.show_diameter(chain.x)} stands"
+        )
+        yield Found(Refusal.BLOCKED, "start.z", detail)
+
+
+def plunge_rules(record: PlungeRecord, ground: Ground) -> Iterator[Found]:
+    """The first rule that a plunge breaks; a good one is cut from the material of `ground`."""
+    for found in _plunge_rules(record, ground):
+        yield found
+        return
+    ground.material.cut(plunge_chain(record, ground.tool.width))
+
+
+def _plunge_rules(record: PlungeRecord, ground: Ground) -> Iterator[Found]:
+    """All rules of a plunge, in the chip's order."""
+    scale = ground.scale
+    if not 0 <= record.kind <= PLUNGE_KIND_MAX:
+        yield Found(Refusal.FORMAT, "", f"kind {record.kind}")
+    if not ground.tool.width:
+        yield Found(Refusal.TOOL, "tool", "a tool without a width cannot cut straight in")
+    yield from _in_order(
+        [
+            *ground.in_front(record.z_high + ground.tool.width, "start"),
+            *ground.outside(record.z_low, record.x, "end", highest=False),
+        ]
+    )
+    if record.z_low > record.z_high:
+        room = scale.show(scale.length(record.z_high - record.z_low))
+        yield Found(Refusal.EMPTY_CUT, "end.z", f"narrower than the tool by {room}")
+    if record.x >= ground.header.stock_radius:
+        yield Found(Refusal.EMPTY_CUT, "end.x", f"{scale.show_diameter(record.x)} is not smaller")

@@ -95,7 +95,9 @@ def test_stored_parts_are_listed_found_selected_and_deleted(lathe: Lathe, image:
 
 
 def test_a_long_part_takes_several_units_side_by_side(lathe: Lathe, machine: Machine) -> None:
-    rows = "".join(f"{{ z = {-0.1 * n}, diameter = {5 + 0.1 * n + 0.2 * (n % 2)} }}," for n in range(150))
+    rows = "".join(
+        f"{{ z = {-0.1 * n}, diameter = {5 + 0.1 * n + 0.2 * (n % 2)} }}," for n in range(150)
+    )
     text = Path(EXAMPLES / "test-bar.toml").read_text(encoding="utf-8").replace('"inch"', '"mm"')
     head = text[: text.index("[stock]")]
     long = (

@@ -42,11 +42,6 @@ class Origin(NamedTuple):
     kind: str
     operation: Operation
 
-    @property
-    def title(self) -> str:
-        """What a message calls it."""
-        return self.operation.title
-
 
 @dataclass(frozen=True)
 class Compiled:
@@ -146,7 +141,8 @@ class _Compiler:
         (z, x), segments = path_segments(path, self.grid, exact=self.tip)
         if not segments:
             text = REFUSAL_TEXTS[Refusal.EMPTY_CUT]
-            return None, [fault(operation, 0, f"{text.cause}: it is shorter than a step", "")], []
+            message = f"{text.cause}: it is shorter than a step"
+            return None, [fault(operation, 0, message, text.remedy)], []
         return Cutting(z, x, segments), [], notes
 
     def _least_x(self, operation: Operation) -> float:
@@ -173,10 +169,12 @@ class _Compiler:
         for operation in self.ordered:
             if isinstance(operation.shape, Contour) and operation.position not in self.cuttings:
                 continue
-            cut = cut if isinstance(operation.shape, Pause) else operation
+            pause = isinstance(operation.shape, Pause)
+            cut = cut if pause else operation
             facing = self._facing(operation)
-            self._state(tools[cut.tool.name], Origin("tool", cut))
-            self._state(self._cut_record(cut, facing), Origin("cut", cut))
+            if not pause or not self.records:
+                self._state(tools[cut.tool.name], Origin("tool", cut))
+                self._state(self._cut_record(cut, facing), Origin("cut", cut))
             self._emit(self._record(operation, facing), Origin("operation", operation))
         image = PartImage(self.header, tuple(self.records))
         return Compiled(image, tuple(self.origins), tuple(self.faults), tuple(self.notes))

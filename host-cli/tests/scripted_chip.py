@@ -15,7 +15,9 @@ from tornillo.protocol import (
     IMAGE_HEADER,
     OVERRIDE_MAX,
     OVERRIDE_MIN,
+    PART_IMAGE_MAX,
     PART_SLOTS,
+    PART_UNIT,
     PROTOCOL_VERSION,
     REQUESTS,
     RESPONSES,
@@ -63,6 +65,11 @@ def refuse(code: ErrorCode, command: Command = Command.STATUS) -> ChipError:
     return ChipError(command, code)
 
 
+def units(image: bytes) -> int:
+    """Units of the store that an image takes."""
+    return -(-(len(image) + 64) // PART_UNIT)
+
+
 class ScriptedChip:
     """What the chip knows, and the faults of the test."""
 
@@ -78,6 +85,7 @@ class ScriptedChip:
         self.wrong_crc = False
         self.executed: list[Command] = []
         self.feed_percent = 100
+        self.step = False
         self.zeroed: list[tuple[int, int]] = []
         self.upload: bytearray | None = None
         self.wanted = (0, 0)
@@ -97,13 +105,14 @@ class ScriptedChip:
     def machine(self) -> Machine:
         """What HELLO tells."""
         data = HelloData(*RESPONSES[Command.HELLO].unpack(self.do_hello(b"")))
-        return Machine.from_hello(data)
+        spindle = self.values[SettingId.SPINDLE_MIN], self.values[SettingId.SPINDLE_MAX]
+        return Machine.from_hello(data, *spindle)
 
     def do_hello(self, _payload: bytes) -> bytes:
         """HELLO."""
         v = self.values
         return RESPONSES[Command.HELLO].pack(
-            *(self.protocol, 0, 1, 0, PART_SLOTS, 960),
+            *(self.protocol, 0, 1, 0, PART_SLOTS, PART_IMAGE_MAX),
             *(v[SettingId.STEP_X_NM], v[SettingId.STEP_Z_NM]),
             *(v[SettingId.TRAVEL_X], v[SettingId.TRAVEL_Z]),
             *(v[SettingId.ZERO_X], v[SettingId.ZERO_Z]),
@@ -129,6 +138,7 @@ class ScriptedChip:
             raise refuse(ErrorCode.NO_PART)
         self.status = self.status._replace(state=State.RUNNING, slot=slot)
         self.feed_percent = 100
+        self.step = bool(payload[1])
         return b""
 
     def do_hold(self, _payload: bytes) -> bytes:
@@ -140,7 +150,7 @@ class ScriptedChip:
 
     def do_resume(self, _payload: bytes) -> bytes:
         """RESUME."""
-        if self.status.state != State.HOLD:
+        if self.status.state not in (State.HOLD, State.PAUSE):
             raise refuse(ErrorCode.NOT_RUNNING)
         self.status = self.status._replace(state=State.RUNNING)
         return b""
@@ -173,11 +183,21 @@ class ScriptedChip:
         self.values[setting] = here - value
         return b""
 
+    def room(self, length: int) -> int:
+        """The first of enough free units side by side."""
+        taken = {
+            unit for slot, image in self.slots.items() for unit in range(slot, slot + units(image))
+        }
+        needed = units(bytes(length))
+        for slot in range(PART_SLOTS - needed + 1):
+            if taken.isdisjoint(range(slot, slot + needed)):
+                return slot
+        raise refuse(ErrorCode.STORE_FULL)
+
     def do_upload_begin(self, payload: bytes) -> bytes:
         """UPLOAD_BEGIN."""
-        if len(self.slots) == PART_SLOTS:
-            raise refuse(ErrorCode.STORE_FULL)
         self.wanted = REQUESTS[Command.UPLOAD_BEGIN].unpack(payload)
+        self.room(self.wanted[0])
         self.upload = bytearray()
         return b""
 
@@ -202,7 +222,7 @@ class ScriptedChip:
         if found is not None:
             code, command = ErrorCode.INVALID_PART, Command.UPLOAD_COMMIT
             raise ChipError(command, code, found.refusal, found.operation)
-        slot = next(slot for slot in range(PART_SLOTS) if slot not in self.slots)
+        slot = self.room(len(image))
         self.slots[slot] = image
         crc = crc16(image) ^ self.wrong_crc
         return RESPONSES[Command.UPLOAD_COMMIT].pack(slot, crc)

@@ -173,10 +173,12 @@ class _Compiler:
         for operation in self.ordered:
             if isinstance(operation.shape, Contour) and operation.position not in self.cuttings:
                 continue
-            cut = cut if isinstance(operation.shape, Pause) else operation
+            pause = isinstance(operation.shape, Pause)
+            cut = cut if pause else operation
             facing = self._facing(operation)
-            self._state(tools[cut.tool.name], Origin("tool", cut))
-            self._state(self._cut_record(cut, facing), Origin("cut", cut))
+            if not pause or not self.records:
+                self._state(tools[cut.tool.name], Origin("tool", cut))
+                self._state(self._cut_record(cut, facing), Origin("cut", cut))
             self._emit(self._record(operation, facing), Origin("operation", operation))
         image = PartImage(self.header, tuple(self.records))
         return Compiled(image, tuple(self.origins), tuple(self.faults), tuple(self.notes))

@@ -56,9 +56,22 @@ def path_segments(
     segments: list[Segment] = []
     for element in path:
         for segment in _segments(element, grid, at, exact):
-            segments.append(segment)
+            if segments and not exact and _straight_on(segments[-1], segment):
+                before = segments.pop()
+                segments.append(
+                    before._replace(dz=before.dz + segment.dz, dx=before.dx + segment.dx)
+                )
+            else:
+                segments.append(segment)
             at = at[0] + segment.dz, at[1] + segment.dx
     return start, tuple(segments)
+
+
+def _straight_on(one: Segment, two: Segment) -> bool:
+    """Whether two lines are one."""
+    lines = one.kind is SegmentKind.LINE and two.kind is SegmentKind.LINE
+    same_way = one.dz * two.dz >= 0 and one.dx * two.dx >= 0
+    return lines and same_way and one.dz * two.dx == one.dx * two.dz
 
 
 def _segments(element: Element, grid: Grid, at: tuple[int, int], exact: bool) -> Iterator[Segment]:

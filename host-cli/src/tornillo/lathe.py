@@ -19,6 +19,7 @@ from typing import Any
 
 from tornillo.errors import ChipError, LinkError, TornilloError
 from tornillo.frames import crc16
+from tornillo.image import ImageError, PartImage
 from tornillo.link import Link, Transport
 from tornillo.machine import Machine
 from tornillo.ports import find_port, open_port
@@ -107,7 +108,9 @@ class Lathe:
     def machine(self) -> Machine:
         """The machine as the chip describes it now."""
         self.hello = self._greet()
-        return Machine.from_hello(self.hello)
+        slowest = self.setting(SettingId.SPINDLE_MIN).value
+        fastest = self.setting(SettingId.SPINDLE_MAX).value
+        return Machine.from_hello(self.hello, slowest, fastest)
 
     def status(self) -> Status:
         """Where the tool is and what the machine does."""
@@ -117,16 +120,19 @@ class Lathe:
         """Start to look for the limit switches; `status()` tells the end."""
         self._request(Command.HOME)
 
-    def run(self, slot: int | None = None) -> None:
-        """Start to cut the part in `slot`, or the selected one; `status()` tells the rest."""
-        self._request(Command.RUN, SLOT_NONE if slot is None else slot)
+    def run(self, slot: int | None = None, step: bool = False) -> None:
+        """Start to cut the part in `slot`, or the selected one; `status()` tells the rest.
+
+        `step`: pause after each operation.
+        """
+        self._request(Command.RUN, SLOT_NONE if slot is None else slot, int(step))
 
     def hold(self) -> None:
         """Stop the run so that it can go on."""
         self._request(Command.HOLD)
 
     def resume(self) -> None:
-        """Go on after a hold."""
+        """Go on after a hold or a pause."""
         self._request(Command.RESUME)
 
     def stop(self) -> None:
@@ -216,6 +222,16 @@ class Lathe:
         if part is None or len(image) != part.length or crc16(image) != part.crc:
             raise ChipError(Command.PART_READ, ErrorCode.NO_PART)
         return image
+
+    def image(self, slot: int) -> PartImage:
+        """The part in `slot` in steps; raises LinkError when it is none that this host knows."""
+        try:
+            return PartImage.unpack(self.read(slot))
+        except ImageError as error:
+            raise LinkError(
+                f"the part in slot {slot} cannot be understood: {error}",
+                "use the tornillo version that it was uploaded with",
+            ) from error
 
     def select(self, slot: int) -> None:
         """Make the part in `slot` the one that the RUN button cuts."""

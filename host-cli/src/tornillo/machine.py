@@ -38,8 +38,10 @@ class Machine:
     spindle_max_rpm: int | None = None
 
     @classmethod
-    def from_hello(cls, hello: HelloData) -> "Machine":
-        """The machine as the chip describes it."""
+    def from_hello(
+        cls, hello: HelloData, slowest: int | None = None, fastest: int | None = None
+    ) -> "Machine":
+        """The machine as the chip describes it; `slowest`, `fastest`: spindle, rev/min."""
         return cls(
             name="the connected lathe",
             step_x_nm=hello.step_x_nm,
@@ -49,6 +51,8 @@ class Machine:
             zero_x=hello.zero_x,
             zero_z=hello.zero_z,
             max_rate=hello.max_rate,
+            spindle_min_rpm=slowest,
+            spindle_max_rpm=fastest,
         )
 
     @classmethod

@@ -76,7 +76,7 @@ def _contour_type(
 
     def either(table: Table, context: Context) -> Shape:
         if context.tip and table.has("points"):
-            return Contour(read_points(table))
+            return Contour(read_points(table, context.tip))
         return read(table, context)
 
     return either
@@ -119,13 +119,19 @@ def _read_arc(table: Table, context: Context) -> Shape:
     """Turn along an arc."""
     start, end = table.point("start"), table.point("end")
     _in_order(table, "end", start.z, end.z, "the start at the free end")
-    arc = read_arc(table, start, end, needed=True)
+    arc = read_arc(table, start, end, exact=context.tip)
+    if isinstance(arc, Line):
+        table.refuse(
+            "",
+            f"{table.title}: radius is missing",
+            "add a line like radius = 5.0, above 0 convex, below 0 concave; or center, or via",
+        )
     return Contour((arc,), ("start", "end"))
 
 
 def _read_profile(table: Table, context: Context) -> Shape:
     """Turn along a chain."""
-    return Contour(read_points(table))
+    return Contour(read_points(table, context.tip))
 
 
 def _read_groove(table: Table, context: Context) -> Shape:

@@ -26,21 +26,17 @@ ARC_KEYS = ("radius", "center", "via")
 
 
 def read_arc(
-    table: Table, start: Point, end: Point, needed: bool = False, place: int = 0
+    table: Table, start: Point, end: Point, place: int = 0, exact: bool = False
 ) -> Element:
     """The arc from `start` to `end` that `table` describes, or a line when it does not.
 
-    Raises PartError.
+    `exact`: it came from an image, where rounding may lead it a little astray. Raises PartError.
     """
     given = [key for key in ARC_KEYS if table.has(key)]
     if not given:
-        if needed:
-            table.refuse(
-                "",
-                f"{table.title}: radius is missing",
-                "add a line like radius = 5.0, above 0 convex, below 0 concave; or center, or via",
-            )
         return Line(start, end, place)
+    if exact and given == ["radius", "center"]:
+        return Arc(start, end, table.point("center"), table.number("radius") > 0, place)
     if "via" in given and len(given) > 1:
         table.refuse(
             "via",
@@ -121,7 +117,7 @@ def _larger(start: Point, end: Point) -> str:
     return f"use a radius of at least {least:.6g}, or end the arc elsewhere"
 
 
-def read_points(table: Table) -> tuple[Element, ...]:
+def read_points(table: Table, exact: bool = False) -> tuple[Element, ...]:
     """The chain through `points`; raises PartError."""
     items = table.items("points", least=2)
     elements: list[Element] = []
@@ -130,7 +126,8 @@ def read_points(table: Table) -> tuple[Element, ...]:
     for number, item in enumerate(items):
         place = Point(item.number("z"), item.number("diameter") / 2)
         if number:
-            elements.append(_piece(item, last, place, number))
+            _check_step(item, last, place)
+            elements.append(read_arc(item, last, place, number, exact))
         _read_corner(item, number, 0 < number < len(items) - 1, corners)
         item.finish()
         last = place
@@ -142,8 +139,8 @@ def read_points(table: Table) -> tuple[Element, ...]:
     return tuple(done)
 
 
-def _piece(item: Table, start: Point, end: Point, number: int) -> Element:
-    """The line or arc that ends in a point."""
+def _check_step(item: Table, start: Point, end: Point) -> None:
+    """Refuse a point that is where the one before is, or in front of it."""
     if distance(start, end) < SAME:
         item.refuse("", f"{item.title}: it is where the one before is", "leave one of them out")
     if end.z > start.z + SAME:
@@ -152,7 +149,6 @@ def _piece(item: Table, start: Point, end: Point, number: int) -> Element:
             f"{item.title}: the contour runs the wrong way, from z = {start.z:g} to {end.z:g}",
             "order the points from the free end towards the chuck",
         )
-    return read_arc(item, start, end, place=number)
 
 
 def _read_corner(

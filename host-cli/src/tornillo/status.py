@@ -91,6 +91,11 @@ class Status:
         """Whether the machine is homing or cutting."""
         return self.state in (State.HOMING, State.RUNNING)
 
+    @property
+    def under_way(self) -> bool:
+        """Whether a run has begun and not ended: it cuts, is held or pauses."""
+        return self.state in (State.RUNNING, State.HOLD, State.PAUSE)
+
     def alarm_error(self) -> AlarmError:
         """The alarm in words, with what to do about it."""
         text = ALARM_TEXTS[self.alarm]

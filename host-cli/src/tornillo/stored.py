@@ -3,12 +3,14 @@
 
 from dataclasses import dataclass
 
-from tornillo.protocol import PartInfoData
+from tornillo.protocol import PART_UNIT, PartInfoData
+
+UNIT_HEADER = 64  # bytes in the first unit of a part
 
 
 @dataclass(frozen=True)
 class StoredPart:
-    """One slot of the part store.
+    """One part in the store; `slot` is its first unit.
 
     `generation` grows with every stored part; `length` in bytes; `crc` of the image.
     """
@@ -20,6 +22,11 @@ class StoredPart:
     length: int
     crc: int
     operations: int
+
+    @property
+    def units(self) -> int:
+        """Units of the store that the part takes."""
+        return -(-(self.length + UNIT_HEADER) // PART_UNIT)
 
     @classmethod
     def from_info(cls, slot: int, info: PartInfoData) -> "StoredPart":

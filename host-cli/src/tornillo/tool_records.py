@@ -34,7 +34,7 @@ def tool_record(number: int, tool: Tool, segments: Iterable[Segment], scale: Sca
             need = -(-climb * SLOPE_UNIT // run) if run else SLOPE_ANY - 1
             needs[falling] = max(needs[falling], min(need, SLOPE_ANY - 1))
     ratio = machine.step_z_nm / machine.step_x_nm
-    nose = math.ceil(tool.nose_radius * NM_PER_UNIT[scale.units] / NM_PER_UM - TINY)
+    nose = nose_micrometres(tool.nose_radius, scale.units)
     return ToolRecord(
         kind=number,
         name=tool.name.encode("ascii").ljust(TOOL_NAME_LENGTH, b"\0"),
@@ -46,6 +46,11 @@ def tool_record(number: int, tool: Tool, segments: Iterable[Segment], scale: Sca
         offset_x=_bounded(scale.x_steps(tool.offset_x)),
         offset_z=_bounded(scale.z_steps(tool.offset_z)),
     )
+
+
+def nose_micrometres(nose: float, units: str) -> int:
+    """A nose radius in whole micrometres, rounded up."""
+    return math.ceil(nose * NM_PER_UNIT[units] / NM_PER_UM - TINY)
 
 
 def _bounded(steps: int) -> int:

@@ -9,11 +9,13 @@ from contextlib import contextmanager
 import click
 
 from tornillo.errors import ChipError, TornilloError
+from tornillo.image import OPERATIONS, PartImage
 from tornillo.lathe import Lathe
-from tornillo.protocol import PERMILLE_DONE, ErrorCode, State
+from tornillo.protocol import PERMILLE_DONE, ErrorCode, PauseRecord, State, ToolRecord
 from tornillo.status import Status
 
 POLL_S = 0.1
+STEP_MESSAGE = "step by step: look at it"
 #: Shows how many permille of the run are done and what is being cut.
 Display = Callable[[int, str], None]
 
@@ -56,9 +58,15 @@ def follow_run(lathe: Lathe) -> None:
 
 
 def _until_standing(lathe: Lathe, show: Display) -> Status:
-    """Poll until the machine neither cuts nor holds."""
-    while (status := lathe.status()).state in (State.RUNNING, State.HOLD):
-        show(status.permille, describe(status))
+    """Poll until the run has ended; what a pause asks for is read from the part once."""
+    asked: dict[int, str] = {}
+    while (status := lathe.status()).under_way:
+        text = describe(status)
+        if status.state is State.PAUSE:
+            if status.operation not in asked:
+                asked[status.operation] = pause_message(lathe, status)
+            text += f": {asked[status.operation]}; go on with RUN or `tornillo resume`"
+        show(status.permille, text)
         time.sleep(POLL_S)
     if status.finished:
         show(PERMILLE_DONE, "finished")
@@ -72,7 +80,36 @@ def describe(status: Status) -> str:
         text = f"operation {status.operation} of {status.operations}"
     if status.passes:
         text += f", pass {status.pass_number} of {status.passes}"
-    return f"{text}, held" if status.state is State.HOLD else text
+    waiting = {State.HOLD: ", held", State.PAUSE: ", paused"}
+    return text + waiting.get(status.state, "")
+
+
+def pause_message(lathe: Lathe, status: Status) -> str:
+    """What the operator is asked for before operation `status.operation` goes on."""
+    if status.slot is None:
+        return STEP_MESSAGE
+    return asked_for(lathe.image(status.slot), status.operation)
+
+
+def asked_for(image: PartImage, operation: int) -> str:
+    """What a part asks for before its operation of this number, from 1.
+
+    A pause or a drill says it itself; another tool is named; otherwise the run goes step by
+    step.
+    """
+    count = 0
+    tool: ToolRecord | None = None
+    for record in image.records:
+        if isinstance(record, ToolRecord):
+            tool = record
+        elif isinstance(record, OPERATIONS):
+            count += 1
+            if count == operation and isinstance(record, PauseRecord):
+                return record.message.decode("ascii", "replace") or STEP_MESSAGE
+            if count == operation and tool is not None and operation > 1:
+                return f"put in the tool {tool.name.rstrip(bytes(1)).decode('ascii', 'replace')}"
+            tool = None
+    return STEP_MESSAGE
 
 
 def _held(lathe: Lathe) -> TornilloError:

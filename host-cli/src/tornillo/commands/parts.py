@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Verbs about parts: check, upload, parts, select, delete."""
+"""Verbs about parts: check, upload, download, parts, select, delete."""
 
 import dataclasses
 import sys
+from pathlib import Path
 
 import click
 
@@ -16,7 +17,9 @@ from tornillo.commands.connection import (
 from tornillo.errors import ChipError, PartError, TornilloError
 from tornillo.machine import Machine
 from tornillo.part import Part
+from tornillo.part_writer import part_text
 from tornillo.protocol_texts import REFUSAL_TEXTS
+from tornillo.toml_lines import Place
 
 file_argument = click.argument("file", type=click.Path(dir_okay=False))
 part_argument = click.argument("part")
@@ -43,6 +46,8 @@ def check(file: str, machine: str) -> None:
     count = len(part.operations)
     noun = "operation" if count == 1 else "operations"
     click.echo(f"{part.name}: {count} {noun}, {size} bytes, fits {known.name}")
+    for note in part.notes(known):
+        click.echo(f"Note: {note}")
 
 
 @click.command()
@@ -76,8 +81,11 @@ def _with_the_line(part: Part, error: ChipError) -> TornilloError:
     """The chip's refusal of a part, with the line of the operation it names."""
     if error.reason is None or error.operation > len(part.operations):
         return error
-    what = f"{part.describe(error.operation)}: " if error.operation else ""
-    place = ("operation", error.operation - 1) if error.operation else ("part",)
+    place: Place = ("part",)
+    what = ""
+    if error.operation:
+        place = ("operation", part.ordered[error.operation - 1].position)
+        what = f"{part.describe(error.operation)}: "
     cause = REFUSAL_TEXTS[error.reason].cause
     refusal: PartError = part.source.error(
         place, f"{what}the chip refuses the part: {cause}", error.remedy
@@ -97,9 +105,9 @@ def list_parts(as_json: bool) -> None:
         stored = lathe.parts()
         slots = lathe.hello.slots
     if as_json:
-        print_json([dataclasses.asdict(part) for part in stored])
+        print_json([{**dataclasses.asdict(part), "units": part.units} for part in stored])
     elif not stored:
-        click.echo(f"no parts stored, {slots} slots free")
+        click.echo(f"no parts stored, all {slots} units of the store are free")
     else:
         print_table(
             {
@@ -107,10 +115,45 @@ def list_parts(as_json: bool) -> None:
                 "part": part.name,
                 "operations": part.operations,
                 "bytes": part.length,
+                "units": part.units,
                 "": "selected" if part.selected else "",
             }
             for part in stored
         )
+        free = slots - sum(part.units for part in stored)
+        click.echo(f"{free} of {slots} units of the store are free; a part takes 1 to 5")
+
+
+@click.command()
+@part_argument
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(dir_okay=False, writable=True),
+    metavar="FILE.toml",
+    help="Part file to write; printed when left out.",
+)
+def download(part: str, output: str | None) -> None:
+    """Read PART (name or slot) back from the lathe as a part file.
+
+    It holds the path of the tool's tip and gives the same image when it is uploaded again.
+
+    \b
+    Example: tornillo download test-bar -o test-bar.toml
+    """
+    with connected() as lathe:
+        found = lathe.find(part)
+        text = part_text(lathe.image(found.slot), lathe.machine())
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    try:
+        Path(output).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise PartError(
+            f"{output}: the file cannot be written: {error.strerror}", "choose another place"
+        ) from error
+    click.echo(f"{found.name} is written to {output}")
 
 
 @click.command()
@@ -138,7 +181,12 @@ def delete(part: str) -> None:
     with connected() as lathe:
         found = lathe.find(part)
         lathe.delete(found.slot)
-    click.echo(f"{found.name} is deleted, slot {found.slot} is free")
+    click.echo(f"{found.name} is deleted, {_units(found.units)} of the store are free again")
 
 
-VERBS = (check, upload, list_parts, select, delete)
+def _units(count: int) -> str:
+    """A number of units."""
+    return f"{count} {'unit' if count == 1 else 'units'}"
+
+
+VERBS = (check, upload, download, list_parts, select, delete)

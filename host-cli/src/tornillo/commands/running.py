@@ -6,7 +6,7 @@ import dataclasses
 import click
 
 from tornillo.commands.connection import connected, json_option, print_json
-from tornillo.commands.following import describe, follow_homing, follow_run
+from tornillo.commands.following import describe, follow_homing, follow_run, pause_message
 from tornillo.lathe import Lathe
 from tornillo.protocol import Axis, State, StatusFlag
 from tornillo.protocol_texts import ALARM_TEXTS
@@ -34,18 +34,19 @@ def home() -> None:
 
 @click.command()
 @click.argument("part", required=False)
+@click.option("--step", is_flag=True, help="Pause after each operation.")
 @follow_option
-def run(part: str | None, follow: bool) -> None:
+def run(part: str | None, step: bool, follow: bool) -> None:
     """Cut PART (name or slot), or the selected part.
 
-    With --follow, Ctrl-C holds the run.
+    With --follow, Ctrl-C holds the run. A pause waits for the RUN button or `tornillo resume`.
 
     \b
     Example: tornillo run test-bar --follow
     """
     with connected() as lathe:
         slot = None if part is None else lathe.find(part).slot
-        lathe.run(slot)
+        lathe.run(slot, step)
         _started(lathe, follow)
 
 
@@ -64,7 +65,7 @@ def hold() -> None:
 @click.command()
 @follow_option
 def resume(follow: bool) -> None:
-    """Go on after a hold.
+    """Go on after a hold or a pause.
 
     \b
     Example: tornillo resume --follow
@@ -165,6 +166,7 @@ def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, obje
         **values,
         "homed": now.homed,
         "finished": now.finished,
+        "message": pause_message(lathe, now) if now.state is State.PAUSE else None,
         "part": names.get(-1 if now.slot is None else now.slot),
         "part_diameter_mm": round(diameter, 4),
         "part_z_mm": round(z, 4),
@@ -187,8 +189,10 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
     rows["dead steps"] = f"X {now.dead_x}, Z {now.dead_z}"
     if now.slot is not None:
         rows["part"] = f"{names.get(now.slot, '?')} (slot {now.slot})"
-    if now.state in (State.RUNNING, State.HOLD):
+    if now.under_way:
         rows["progress"] = f"{now.permille / 10:.1f} %, {describe(now)}"
+    if now.state is State.PAUSE:
+        rows["waits for"] = f"{pause_message(lathe, now)}; go on with RUN or `tornillo resume`"
     pressed = [
         text
         for flag, text in (

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 
 from tornillo.protocol import Axis
 from virtual_lathe.chip import CYCLES_PER_SECOND
@@ -69,9 +69,11 @@ class Watch:
         bench.chip.watch_writes(slack, slack + 3)
 
     def _note(self, moves: Iterable[Move]) -> None:
-        for move in moves:
+        every = list(moves)
+        for move, then in zip_longest(every, every[1:]):
             before = self._work.steps_cutting
-            self._cut([move])
+            if then is None or then.cycle - move.cycle >= SAME_STEP:
+                self._cut([move])
             axis = "X" if move.x != self._last[0] else "Z"
             direction = 1 if (move.x, move.z) > self._last else -1
             self._last = move.x, move.z

@@ -4,13 +4,15 @@
 It prints the port on the first line of standard output, then a line of state every few seconds,
 and writes the report when it ends. Lines typed on standard input press buttons while it runs:
 ``press run``, ``press hold``, ``press stop``, ``press estop``, ``press release``, ``plug``,
-``unplug``, ``state``, ``quit``.
+``unplug``, ``state``, ``quit``. ``tool NAME`` puts another tool of the part into the holder, ``tool
+next`` the one that the part needs next.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import select
 import signal
@@ -43,11 +45,9 @@ def _timed(text: str) -> tuple[str, float]:
 
 
 def _nose_radius(text: str) -> float:
-    if float(text) != 0.0:
-        raise argparse.ArgumentTypeError(
-            "the tool is modelled as a point so far: only a nose radius of 0 is possible"
-        )
-    return 0.0
+    if not 0 <= float(text) < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r}: a nose radius is 0 or more")
+    return float(text)
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -59,7 +59,8 @@ def build_parser() -> argparse.ArgumentParser:
     add("--stock-diameter", type=float, metavar="MM", help="default: of the part, else 25.4")
     add("--stock-length", type=float, metavar="MM", help="part zero to chuck; else 50.8")
     add("--stock-allowance", type=float, metavar="MM", help="raw metal beyond z = 0")
-    add("--nose-radius", type=_nose_radius, default=0.0, metavar="MM")
+    add("--nose-radius", type=_nose_radius, metavar="MM", help="default: of the part's tools")
+    add("--tool", default="", metavar="NAME", help="in the holder at first; default: as needed")
     for axis in "xz":
         add(f"--backlash-{axis}", type=int, default=0, metavar="STEPS")
         add(f"--switch-travel-{axis}", type=int, default=0, metavar="STEPS")
@@ -93,6 +94,8 @@ def options_from(arguments: argparse.Namespace) -> Options:
         stock_diameter_mm=arguments.stock_diameter,
         stock_length_mm=arguments.stock_length,
         stock_allowance_mm=arguments.stock_allowance,
+        nose_radius_mm=arguments.nose_radius,
+        tool=arguments.tool,
         backlash_x=arguments.backlash_x,
         backlash_z=arguments.backlash_z,
         switch_travel_x=arguments.switch_travel_x,
@@ -165,7 +168,7 @@ class Session:
             f"t={self.lathe.seconds:.1f}s X={x.slide:g} Z={z.slide:g} "
             f"steps={x.steps}+{z.steps} lost={x.lost_steps}+{z.lost_steps} "
             f"cut={self.lathe.workpiece.steps_cutting} port={usb} "
-            f"led={self.lathe.chip.level('RC0')}"
+            f"led={self.lathe.chip.level('RC0')} tool={self.lathe.workpiece.tool.name}"
         )
 
     def run(self) -> None:
@@ -217,8 +220,16 @@ class Session:
             print(self.state_line(), flush=True)
         elif words and words[-1] in ACTIONS:
             self.act(words[-1])
+        elif len(words) == 2 and words[0] == "tool":
+            self._change_tool(words[1])
         elif words:
             print(f"not understood: {' '.join(words)}", flush=True)
+
+    def _change_tool(self, name: str) -> None:
+        try:
+            print(f"tool: {self.lathe.change_tool('' if name == 'next' else name)}", flush=True)
+        except ValueError as error:
+            print(error, flush=True)
 
     def finish(self) -> None:
         """Write the report and what must survive."""

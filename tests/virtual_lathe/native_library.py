@@ -123,7 +123,26 @@ class FaultC(Structure):
     _fields_ = [("cycle", c_uint64), ("axis", c_int32), ("kind", c_int32), ("value", c_int64)]
 
 
+class ToolC(Structure):
+    """struct vl_tool"""
+
+    _fields_ = [(name, c_double) for name in ("nose", "width", "chuck_edge", "free_edge")]
+
+
+class PathC(Structure):
+    """struct vl_path"""
+
+    _fields_ = [(name, c_double) for name in ("x_from", "z_from", "x_to", "z_to")]
+
+
+class CutC(Structure):
+    """struct vl_cut"""
+
+    _fields_ = [("columns", c_int32), ("fallen", c_int32), ("reach", c_double)]
+
+
 _BYTES = POINTER(c_uint8)
+_DOUBLES = POINTER(c_double)
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_load": (c_int, [c_char_p]),
     "vl_run": (c_int, [c_uint64]),
@@ -180,6 +199,15 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_switch_quality": (None, [c_uint, c_uint, c_uint]),
     "vl_moves": (c_int, [POINTER(MoveC), c_int]),
     "vl_faults": (c_int, [POINTER(FaultC), c_int]),
+    "vl_metal_new": (c_int, [c_double, c_int, c_int]),
+    "vl_metal_tool": (None, [c_int, POINTER(ToolC)]),
+    "vl_metal_move": (None, [c_int, POINTER(PathC), c_int, POINTER(CutC)]),
+    "vl_metal_radii": (c_int, [c_int, _DOUBLES, c_int]),
+    "vl_metal_radius": (c_double, [c_int, c_int]),
+    "vl_metal_fallen": (c_int, [c_int, _DOUBLES, c_int]),
+    "vl_tool_outline": (c_double, [POINTER(ToolC), c_double]),
+    "vl_above": (c_double, [_DOUBLES, c_int, c_int, c_int, c_double]),
+    "vl_reach": (None, [POINTER(ToolC), _DOUBLES, _DOUBLES, c_int, c_int]),
 }
 
 

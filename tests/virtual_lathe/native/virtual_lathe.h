@@ -228,6 +228,48 @@ struct vl_fault {
 };
 int vl_faults(struct vl_fault *entries, int room);
 
+/* ---- Metal: metal.cc, reach.cc ------------------------------------------- */
+
+/* A bar that a tool cuts, in part coordinates: x a radius, z = 0 the front of
+ * the finished part, both in steps.  It needs no chip; there may be many. */
+#define VL_COLUMNS_PER_STEP 16
+struct vl_tool {
+    double nose;       /* radius of the nose, steps */
+    double width;      /* of a grooving tool, from the tip away from the chuck;
+                          0: the tool ends in its nose */
+    double chuck_edge; /* degrees between the Z axis and the edge towards the */
+    double free_edge;  /* chuck and towards the free end; 90 = square */
+};
+/* Returns a number for the calls below; radii stand at first_z..last_z. */
+int vl_metal_new(double radius, int first_z, int last_z);
+void vl_metal_tool(int metal, const struct vl_tool *tool);
+struct vl_path {
+    double x_from, z_from, x_to, z_to; /* of the tip */
+};
+struct vl_cut {
+    int32_t columns; /* how often one was lowered, 0: nothing was touched */
+    int32_t fallen;  /* column from which on the bar fell off, or -1 */
+    double reach;    /* from the tip to the highest metal it removed, steps */
+};
+/* Moves the tool on a straight line; a trial only tells what it would cut. */
+void vl_metal_move(int metal, const struct vl_path *path, int trial,
+                   struct vl_cut *cut);
+/* Radii of all columns; returns how many there are. */
+int vl_metal_radii(int metal, double *radii, int room);
+double vl_metal_radius(int metal, int column);
+/* The same of the piece that fell off last, from its first column on. */
+int vl_metal_fallen(int metal, double *radii, int room);
+/* How far above its tip the tool begins at a distance u along Z. */
+double vl_tool_outline(const struct vl_tool *tool, double u);
+/* The lowest surface a tool can cut without going below the wanted one, both
+ * with `count` radii, `per_step` of them to a step. */
+void vl_reach(const struct vl_tool *tool, const double *wanted, double *reached,
+              int count, int per_step);
+/* How far a radius at a column stands above such a surface, in steps: the
+ * distance to the lines between its radii.  Infinite radii are no surface. */
+double vl_above(const double *surface, int count, int per_step, int column,
+                double radius);
+
 #ifdef __cplusplus
 }
 #endif

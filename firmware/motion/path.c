@@ -125,6 +125,10 @@ static uint8_t accept(void)
     }
     if (!path_source()) {
         complete = 1;
+        if (path_head == path_made) { /* nothing at all */
+            path_mark = path_next.mark;
+            ended = 1;
+        }
         return 0;
     }
     path_next.count = 0;

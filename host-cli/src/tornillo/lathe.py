@@ -29,6 +29,7 @@ from tornillo.protocol import (
     PROTOCOL_VERSION,
     REQUESTS,
     RESPONSES,
+    SERIAL_LENGTH,
     SETTINGS,
     SLOT_NONE,
     UPLOAD_PIECE_MAX,
@@ -237,6 +238,21 @@ class Lathe:
         """Change a setting and store it."""
         self._request(Command.SETTING_SET, setting, value)
 
+    def set_serial_number(self, serial: str) -> None:
+        """Give the chip another serial number: 8 characters from ! to ~ without a comma.
+
+        USB shows it from the next connection on. Raises TornilloError for other characters.
+        """
+        fits = all("!" <= character <= "~" and character != "," for character in serial)
+        if len(serial) != SERIAL_LENGTH or not fits:
+            raise TornilloError(
+                f'"{serial}" cannot be a serial number',
+                f"choose {SERIAL_LENGTH} letters, digits or signs, without spaces and commas, "
+                "like TN-00042",
+            )
+        self._request(Command.SERIAL_SET, serial.encode("ascii"))
+        self.hello = self._greet()
+
     def _greet(self) -> HelloData:
         """Start the sequence anew and check the protocol version."""
         data = self._request(Command.HELLO)
@@ -248,7 +264,7 @@ class Lathe:
             )
         return HelloData(*self._unpack(Command.HELLO, data))
 
-    def _request(self, command: Command, *values: int, data: bytes = b"") -> bytes:
+    def _request(self, command: Command, *values: int | bytes, data: bytes = b"") -> bytes:
         """Send a request made of `values` and `data`."""
         try:
             payload = REQUESTS[command].pack(*values) + data

@@ -9,7 +9,7 @@ import sys
 import click
 
 from tornillo import __version__
-from tornillo.commands import drawing, parts, running, settings
+from tornillo.commands import computer, drawing, parts, running, settings
 from tornillo.errors import TornilloError
 
 
@@ -43,6 +43,6 @@ def main(context: click.Context, port: str | None) -> None:
     context.obj = port
 
 
-for module in (parts, drawing, running, settings):
+for module in (parts, drawing, running, settings, computer):
     for verb in module.VERBS:
         main.add_command(verb)

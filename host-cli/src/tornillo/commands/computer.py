@@ -20,7 +20,11 @@ from tornillo.udev import RULE, RULES_FOLDER, install_rule
 def udev(show: bool, folder: Path) -> None:
     """Let every user of this Linux computer open the port, and keep ModemManager off it.
 
-    Installs a udev rule; needs root once: sudo tornillo udev
+    Installs a udev rule, which needs root once.
+
+    \b
+    Examples: sudo tornillo udev
+              tornillo udev --show
     """
     if show:
         click.echo(RULE, nl=False)

@@ -46,6 +46,7 @@ from tornillo.protocol import (
 )
 from tornillo.status import Status
 from tornillo.stored import StoredPart
+from tornillo.watch import StatusWatch
 
 Progress = Callable[[int, int], None]
 
@@ -113,6 +114,14 @@ class Lathe:
     def status(self) -> Status:
         """Where the tool is and what the machine does."""
         return Status.from_data(StatusData(*self._numbers(Command.STATUS)))
+
+    def watch(self, callback: Callable[[Status], object], every_s: float = 0.1) -> StatusWatch:
+        """Call `callback` with the status every `every_s` seconds, in a thread of its own.
+
+        with lathe.watch(print):
+            lathe.run()
+        """
+        return StatusWatch(self.status, callback, every_s)
 
     def home(self) -> None:
         """Start to look for the limit switches; `status()` tells the end."""

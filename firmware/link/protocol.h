@@ -289,6 +289,12 @@
 #define SETTING_SET_RESPONSE_SIZE           1
 #define SETTING_SET_ID_AT                   0
 #define SETTING_SET_VALUE_AT                1
+/* Give the chip another serial number, stored in EEPROM before the answer.
+ * HELLO shows it at once, USB from the next connection on. */
+#define COMMAND_SERIAL_SET                  0x22
+#define SERIAL_SET_REQUEST_SIZE             8
+#define SERIAL_SET_RESPONSE_SIZE            1
+#define SERIAL_SET_SERIAL_AT                0
 
 /* Part image: header, then one record per operation. */
 #define PART_IMAGE_FORMAT                   2

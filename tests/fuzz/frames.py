@@ -32,7 +32,7 @@ NOT_BY_RIGHT = {Command.HOME}
 #: Of right frames with these codes most are left out, because they write flash or EEPROM.
 SLOW = {
     Command.UPLOAD_BEGIN, Command.UPLOAD_DATA, Command.UPLOAD_COMMIT, Command.PART_SELECT,
-    Command.PART_DELETE, Command.SETTING_SET,
+    Command.PART_DELETE, Command.SETTING_SET, Command.SERIAL_SET,
 }  # fmt: skip
 
 

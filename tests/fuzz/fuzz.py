@@ -143,7 +143,7 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args(argv)
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(2, mp_context=context) as pool:
+    with ProcessPoolExecutor(2, mp_context=context, max_tasks_per_child=1) as pool:
         parts = [
             pool.submit(fuzz_transfers, arguments.transfers, arguments.seed),
             pool.submit(fuzz_frames, arguments.frames, arguments.seed),

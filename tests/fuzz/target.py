@@ -97,6 +97,7 @@ class Target:
             ask(Command.PART_READ, slot, 0)
             ask(Command.RUN, slot)
             ask(Command.PART_DELETE, slot)
+        bench.ask(99, Command.SERIAL_SET, b"TN-00042")
         ask(Command.ZERO, 0, 0)
         ask(Command.OVERRIDE, 100)
         for command in (Command.HOLD, Command.RESUME, Command.STOP, Command.RESET, Command.STATUS):

@@ -168,6 +168,7 @@ def leave_packets_disabled(hand: Hand) -> None:
 
 
 def suspend_a_busy_bus(hand: Hand) -> None:
+    hand.chip.run(LONG_S)
     hand.chip.write(UCON, USBEN | SUSPND)
 
 

@@ -125,6 +125,8 @@ void UsbEngine::bus_idle()
 
 void UsbEngine::bus_activity()
 {
+    if (idle_)
+        idle_end_ = chip().now();
     idle_ = false;
     if (connected() && reg(UCON) & SUSPND)
         raise(ACTVIF);

@@ -204,8 +204,8 @@ void UsbEngine::write_ucon(uint8_t value)
     after |= before & SE0;
     after |= before & value & PKTDIS; // firmware can only clear it
     reg(UCON) = after;
-    if (after & ~before & SUSPND && !idle_)
-        mistake("SUSPND set although the bus is not idle");
+    if (after & ~before & SUSPND)
+        check_suspend();
     if (before & ~after & SUSPND)
         clock_back_ = chip().now() + CLOCK_BACK_CYCLES;
     if (!(before & USBEN) && after & USBEN) {

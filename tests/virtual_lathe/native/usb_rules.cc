@@ -67,6 +67,13 @@ void UsbEngine::check_stall_handled(unsigned endpoint)
             text("endpoint %u: EPSTALL is still set after the halt", endpoint));
 }
 
+// A bus that wakes up just when the firmware goes to sleep wakes it again.
+void UsbEngine::check_suspend()
+{
+    if (!idle_ && chip().now() > idle_end_ + PATIENCE_CYCLES)
+        mistake("SUSPND set although the bus is not idle");
+}
+
 // ---- address ------------------------------------------------------------------
 
 void UsbEngine::setup_seen(const std::vector<uint8_t> &data)

@@ -37,8 +37,12 @@
  * from VBUS. A self-powered board may draw less than it declares, so one
  * number serves both.
  */
+#ifndef USB_SELF_POWERED
 #define USB_SELF_POWERED 1
+#endif
+#ifndef USB_BUS_CURRENT_MA
 #define USB_BUS_CURRENT_MA 100
+#endif
 
 /* ---- VBUS sense ---------------------------------------------------------
  * Pin that is high while the cable carries power. With the pin left open the

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The USB serial interface engine of the PIC18F4550 (data sheet chapter 17):
 // special function registers, buffer descriptors in dual-port RAM, and the
-// answers to tokens from the bus.  usb_rules.cc keeps a list of mistakes: things
-// the firmware does that the data sheet forbids or that race with the engine.
+// answers to tokens from the bus.  usb_rules.cc keeps a list of mistakes:
+// things the firmware does that the data sheet forbids or that race with the
+// engine.
 
 #ifndef VIRTUAL_LATHE_USB_ENGINE_HH
 #define VIRTUAL_LATHE_USB_ENGINE_HH

@@ -74,7 +74,7 @@ void UsbEngine::check_suspend()
         mistake("SUSPND set although the bus is not idle");
 }
 
-// ---- address ------------------------------------------------------------------
+// ---- address ---------------------------------------------------------------
 
 void UsbEngine::setup_seen(const std::vector<uint8_t> &data)
 {

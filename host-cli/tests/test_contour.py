@@ -2,6 +2,7 @@
 """Geometry of lines and arcs, rounded corners, and the way onto the grid of whole steps."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import pytest
@@ -38,7 +39,8 @@ STEPS = Grid(1.0, 1.0)
 def test_an_arc_knows_its_way() -> None:
     arc = arc_by_radius(Point(0, 0), Point(-3, 3), 3)
     assert distance(arc.centre, Point(-3, 0)) < 1e-12
-    assert (arc.radius, arc.sweep) == (pytest.approx(3), pytest.approx(math.pi / 2))
+    assert arc.radius == pytest.approx(3)
+    assert arc.sweep == pytest.approx(math.pi / 2)
     assert distance(arc.at(0.5), Point(-3 + 3 * math.sqrt(0.5), 3 * math.sqrt(0.5))) < 1e-12
     assert distance(arc.direction(arc.start), Point(0, 1)) < 1e-12
     assert distance(arc.normal(arc.end), Point(0, 1)) < 1e-12
@@ -135,7 +137,7 @@ def test_a_chamfer_is_measured_along_both_sides() -> None:
 
 @pytest.mark.parametrize("work", [rounded, chamfered])
 def test_what_has_no_corner_or_no_room_is_refused(
-    work: "type[list[Element]]",
+    work: Callable[[Element, Element, float], list[Element]],
 ) -> None:
     one, two = Line(Point(0, 4), Point(-4, 4)), Line(Point(-4, 4), Point(-9, 4))
     with pytest.raises(ValueError, match="there is no corner"):

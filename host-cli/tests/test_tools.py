@@ -64,9 +64,9 @@ def test_nose_width_and_offset_are_told_in_the_units_of_the_chip() -> None:
     inch = HEAD.replace('"mm"', '"inch"').replace("20.0", "0.8").replace("40.0", "1.6")
     inch = inch.replace("1.0", "0.04").replace("100.0", "4.0").replace("0.5", "0.02")
     bar = operation("cylinder", "z = [0.0, -0.4]\ndiameter = 0.6")
-    [found, *_] = steps(bar, head=inch + tool("nose_radius = 0.03125")).records
-    assert isinstance(found, ToolRecord)
-    assert (found.nose, found.below) == (794, 112)
+    [drawn_in_inch, *_] = steps(bar, head=inch + tool("nose_radius = 0.03125")).records
+    assert isinstance(drawn_in_inch, ToolRecord)
+    assert (drawn_in_inch.nose, drawn_in_inch.below) == (794, 112)
 
 
 @pytest.mark.parametrize(

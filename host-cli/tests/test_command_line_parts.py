@@ -30,8 +30,8 @@ def part_file(folder: Path, source: Path, old: str, new: str) -> Path:
 def test_check_accepts_the_examples(tornillo: Tornillo, test_bar: Path, stepped_pin: Path) -> None:
     result = tornillo("check", test_bar)
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout == "test-bar: 1 operation, 72 bytes, fits otmt-co\n"
-    assert "4 operations, 116 bytes" in tornillo("check", stepped_pin).stdout
+    assert result.stdout == "test-bar: 1 operation, 95 bytes, fits otmt-co\n"
+    assert "4 operations, 134 bytes" in tornillo("check", stepped_pin).stdout
 
 
 def test_check_tells_every_problem_and_exits_with_1(
@@ -67,8 +67,8 @@ def test_upload_stores_verifies_and_says_where(
 ) -> None:
     result = tornillo("upload", test_bar)
     assert result.exit_code == 0
-    assert result.stdout == "test-bar is stored in slot 0, 72 bytes, verified\n"
-    assert len(chip.slots[0]) == 72
+    assert result.stdout == "test-bar is stored in slot 0, 95 bytes, verified\n"
+    assert len(chip.slots[0]) == 95
 
 
 def test_upload_uses_the_step_sizes_of_the_chip(
@@ -78,8 +78,8 @@ def test_upload_uses_the_step_sizes_of_the_chip(
     chip.values[SettingId.TRAVEL_X] = 7150
     chip.values[SettingId.ZERO_X] = -7150
     assert tornillo("upload", test_bar).exit_code == 0
-    assert chip.slots[0][20:24] == (3556).to_bytes(4, "little")
-    assert chip.slots[0][28:32] == (3571).to_bytes(4, "little")
+    assert chip.slots[0][20:24] == (3556).to_bytes(2, "little") + (7112).to_bytes(2, "little")
+    assert chip.slots[0][24:26] == (3571).to_bytes(2, "little")
 
 
 def test_upload_refuses_a_part_beyond_the_travel_before_sending_it(
@@ -117,23 +117,24 @@ def test_upload_tells_the_line_of_what_the_chip_refuses(
 def test_upload_to_a_full_store_says_how_to_make_room(
     tornillo: Tornillo, chip: ScriptedChip, test_bar: Path
 ) -> None:
-    for _ in range(8):
+    for _ in range(16):
         assert tornillo("upload", test_bar).exit_code == 0
     result = tornillo("upload", test_bar)
     assert result.exit_code == 1
     assert "no room for one more part" in result.stderr
     assert "tornillo delete" in result.stderr
-    assert len(chip.slots) == 8
+    assert len(chip.slots) == 16
 
 
 def test_parts_are_listed_for_people_and_for_scripts(tornillo: Tornillo, test_bar: Path) -> None:
-    assert tornillo("parts").stdout == "no parts stored, 8 slots free\n"
+    assert tornillo("parts").stdout == "no parts stored, all 16 units of the store are free\n"
     assert json.loads(tornillo("parts", "--json").stdout) == []
     tornillo("upload", test_bar)
     tornillo("select", "test-bar")
     listed = tornillo("parts").stdout
     assert "test-bar" in listed
     assert "selected" in listed
+    assert "15 of 16 units of the store are free" in listed
     [part] = json.loads(tornillo("parts", "--json").stdout)
     assert (part["slot"], part["name"], part["selected"]) == (0, "test-bar", True)
 
@@ -145,12 +146,43 @@ def test_select_and_delete_take_names_and_slots(
     result = tornillo("select", "0")
     assert result.stdout == "test-bar is selected: the RUN button cuts it\n"
     assert chip.selected == 0
-    assert tornillo("delete", "test-bar").stdout == "test-bar is deleted, slot 0 is free\n"
+    assert tornillo("delete", "test-bar").stdout == "test-bar is deleted, 1 unit is free again\n"
     assert chip.slots == {}
     result = tornillo("delete", "test-bar")
     assert result.exit_code == 1
     assert "no part called 'test-bar' is stored in the lathe" in result.stderr
     assert "Try: stored are: none" in result.stderr
+
+
+def test_download_gives_a_file_with_the_same_image(
+    tornillo: Tornillo, chip: ScriptedChip, tmp_path: Path, stepped_pin: Path
+) -> None:
+    tornillo("upload", stepped_pin)
+    path = tmp_path / "back.toml"
+    result = tornillo("download", "stepped-pin", "-o", path)
+    assert (result.exit_code, result.stdout) == (0, f"stepped-pin is written to {path}\n")
+    assert tornillo("upload", path).exit_code == 0
+    assert chip.slots[1] == chip.slots[0]
+    assert tornillo("download", "0").stdout == path.read_text(encoding="utf-8")
+
+
+def test_download_to_a_place_that_is_not_there_is_refused(
+    tornillo: Tornillo, tmp_path: Path, test_bar: Path
+) -> None:
+    tornillo("upload", test_bar)
+    result = tornillo("download", "test-bar", "-o", tmp_path / "none" / "back.toml")
+    assert result.exit_code == 1
+    assert "the file cannot be written: No such file" in result.stderr
+
+
+def test_check_notes_what_will_be_left(
+    tornillo: Tornillo, tmp_path: Path, stepped_pin: Path
+) -> None:
+    tool = '[[tool]]\nname = "round"\nnose_radius = 0.4\n\n[[operation]]\ntype = "face"'
+    path = part_file(tmp_path, stepped_pin, '[[operation]]\ntype = "face"', tool)
+    result = tornillo("check", path)
+    assert result.exit_code == 0
+    assert "Note: operation 1 (face): the slide ends before the round nose" in result.stdout
 
 
 @pytest.mark.parametrize("suffix", [".svg", ".png"])

@@ -77,7 +77,12 @@ def test_run_without_a_name_starts_the_selected_part(
     tornillo: Tornillo, loaded: ScriptedChip, port: ScriptedPort
 ) -> None:
     assert tornillo("run").exit_code == 0
-    assert port.requests[-1].payload == b"\xff"
+    assert port.requests[-1].payload == b"\xff\0"
+
+
+def test_run_step_by_step_tells_the_chip(tornillo: Tornillo, loaded: ScriptedChip) -> None:
+    assert tornillo("run", "--step").exit_code == 0
+    assert loaded.step
 
 
 def test_run_of_an_unknown_part_is_refused(tornillo: Tornillo, loaded: ScriptedChip) -> None:

@@ -4,12 +4,14 @@
 from pathlib import Path
 
 import pytest
+from conftest import EXAMPLES
 from scripted_chip import IDLE, ScriptedChip, ScriptedPort
 
 from tornillo import Axis, Part, SettingId, Status
 from tornillo.errors import ChipError, LinkError, TornilloError
 from tornillo.frames import crc16
 from tornillo.lathe import Lathe
+from tornillo.machine import Machine
 from tornillo.protocol import (
     SETTINGS,
     Alarm,
@@ -34,7 +36,7 @@ def test_an_upload_is_stored_byte_for_byte_and_reports_its_progress(
     progress: list[tuple[int, int]] = []
     slot = lathe.upload(image, lambda sent, total: progress.append((sent, total)))
     assert chip.slots == {slot: image}
-    assert progress == [(32, 72), (64, 72), (72, 72)]
+    assert progress == [(32, 95), (64, 95), (95, 95)]
     assert lathe.read(slot) == image
 
 
@@ -65,7 +67,7 @@ def test_an_image_damaged_on_purpose_is_refused_by_the_chip_with_its_reason(
     lathe: Lathe, chip: ScriptedChip, image: bytes
 ) -> None:
     damaged = bytearray(image)
-    damaged[56] = 99
+    damaged[82] = 99
     with pytest.raises(ChipError) as caught:
         lathe.upload(bytes(damaged))
     assert caught.value.reason is Refusal.OPERATION_TYPE
@@ -82,13 +84,42 @@ def test_stored_parts_are_listed_found_selected_and_deleted(lathe: Lathe, image:
         (first, "test-bar", False),
         (second, "test-bar", True),
     ]
-    assert (parts[0].length, parts[0].crc, parts[0].operations) == (72, crc16(image), 1)
+    assert (parts[0].length, parts[0].crc, parts[0].operations) == (95, crc16(image), 1)
     assert lathe.find("test-bar").slot == second
     assert lathe.find("0").slot == first
     lathe.delete(second)
+    assert (parts[0].units, second) == (1, first + 1)
     assert lathe.part(second) is None
     with pytest.raises(TornilloError, match="no part called 'other'"):
         lathe.find("other")
+
+
+def test_a_long_part_takes_several_units_side_by_side(lathe: Lathe, machine: Machine) -> None:
+    rows = "".join(
+        f"{{ z = {-0.1 * n}, diameter = {5 + 0.1 * n + 0.2 * (n % 2)} }}," for n in range(150)
+    )
+    text = Path(EXAMPLES / "test-bar.toml").read_text(encoding="utf-8").replace('"inch"', '"mm"')
+    head = text[: text.index("[stock]")]
+    long = (
+        f"{head}[stock]\ndiameter = 25\nlength = 30\n[cut]\ndepth_of_cut = 1\nfeed = 99\n"
+        f'retract = 1\n[[operation]]\ntype = "profile"\npoints = [{rows}]\n'
+    )
+    image = Part.parse(long).image(machine)
+    first, second = lathe.upload(image), lathe.upload(image)
+    assert [part.units for part in lathe.parts()] == [2, 2]
+    assert (first, second) == (0, 2)
+    assert lathe.image(second).pack() == image
+
+
+def test_a_part_of_an_unknown_format_cannot_be_downloaded(lathe: Lathe, chip: ScriptedChip) -> None:
+    chip.slots[4] = bytes(32) + b"\x63\0\x04\0"
+    with pytest.raises(LinkError, match="the part in slot 4 cannot be understood"):
+        lathe.image(4)
+
+
+def test_the_machine_tells_its_spindle_speeds(lathe: Lathe) -> None:
+    machine = lathe.machine()
+    assert (machine.spindle_min_rpm, machine.spindle_max_rpm) == (100, 3800)
 
 
 def test_reading_an_empty_slot_is_refused(lathe: Lathe) -> None:
@@ -174,11 +205,14 @@ def test_a_number_that_does_not_fit_its_field_is_refused_before_it_is_sent(
     assert len(port.requests) == sent
 
 
-def test_the_verbs_of_motion_change_the_state(lathe: Lathe, image: bytes) -> None:
+def test_the_verbs_of_motion_change_the_state(
+    lathe: Lathe, chip: ScriptedChip, image: bytes
+) -> None:
     lathe.home()
     assert lathe.status().state is State.HOMING
     lathe.stop()
-    lathe.run(lathe.upload(image))
+    lathe.run(lathe.upload(image), step=True)
+    assert chip.step
     assert lathe.status().state is State.RUNNING
     lathe.hold()
     assert lathe.status().state is State.HOLD

@@ -5,10 +5,14 @@ from pathlib import Path
 
 import pytest
 
+from tornillo.contour import Line, Point
 from tornillo.errors import PartError
+from tornillo.image import unpack_segments
 from tornillo.machine import Machine
-from tornillo.part import Cylinder, Face, Part
-from tornillo.toml_source import line_numbers
+from tornillo.operations import Contour
+from tornillo.part import Part
+from tornillo.protocol import ContourRecord, CutRecord
+from tornillo.toml_lines import line_numbers
 
 TEXT = """\
 [part]
@@ -49,16 +53,25 @@ def refused(old: str, new: str, machine: Machine | None = None) -> PartError:
 
 def test_the_example_text_is_understood_and_accepted(machine: Machine) -> None:
     part = Part.parse(TEXT)
-    assert part.operations == (Face(0.0, 0.0), Cylinder(0.0, -10.0, 15.0))
+    assert [operation.type for operation in part.operations] == ["face", "cylinder"]
+    face, cylinder = (operation.shape for operation in part.operations)
+    assert isinstance(face, Contour)
+    assert isinstance(cylinder, Contour)
+    assert face.elements == (Line(Point(0.0, 0.0), Point(0.0, 10.0)),)
+    assert cylinder.elements == (Line(Point(0.0, 7.5), Point(-10.0, 7.5)),)
     part.check(machine)
 
 
 def test_the_test_bar_is_the_one_of_the_paper(test_bar: Path, machine: Machine) -> None:
     part = Part.load(test_bar)
     assert (part.units, part.stock.diameter, part.stock.length) == ("inch", 1.0, 2.0)
-    assert part.operations == (Cylinder(0.0, -1.0, 0.6),)
-    header = part.steps(machine).header
-    assert (header.stock_radius, header.depth_of_cut, header.feed) == (1786, 179, 137143)
+    image = part.steps(machine)
+    _, cut, cylinder = image.records
+    assert isinstance(cut, CutRecord)
+    assert isinstance(cylinder, ContourRecord)
+    assert (image.header.stock_radius, cut.depth_of_cut, cut.feed) == (1786, 179, 137143)
+    [line] = unpack_segments(cylinder.segments)
+    assert (cylinder.z, cylinder.x, line.dz, line.dx) == (0, 1071, -3571, 0)
 
 
 def test_finish_feed_allowances_and_inner_diameter_may_be_left_out() -> None:
@@ -110,7 +123,12 @@ def test_whole_numbers_are_numbers_too() -> None:
             "[",
         ),
         ("z = [0.0, -10.0]", 'z = [0.0, "a"]', "operation 2 (cylinder): z must be a number", "quo"),
-        ("z = 0.0", "z = 0.0\ndepth = 1", 'operation 1 (face): unknown key "depth"', "known keys"),
+        (
+            "z = 0.0",
+            "z = 0.0\ndepth = 1",
+            'operation 1 (face): unknown key "depth"',
+            "depth_of_cut",
+        ),
         ("[cut]", "[cut]\nfeed = 1", "this is not TOML", "missing"),
     ],
 )
@@ -154,7 +172,7 @@ def test_what_cannot_be_understood_is_refused_with_place_and_remedy(
         ),
         (
             "[0.0, -10.0]",
-            "[0.6, -10.0]",
+            "[0.9, -10.0]",
             "bar.toml:23: operation 2 (cylinder): the operation",
             "in",
         ),
@@ -179,7 +197,7 @@ def test_what_cannot_be_understood_is_refused_with_place_and_remedy(
         (
             "[0.0, -10.0]",
             "[-10.0, 0.0]",
-            "the operation has nothing to cut: from z = -10.00",
+            "the operation has nothing to cut: from z = -10 to 0",
             "free end",
         ),
         (
@@ -194,7 +212,7 @@ def test_what_cannot_be_understood_is_refused_with_place_and_remedy(
             "operation 1 (face): the operation has noth",
             "small",
         ),
-        ("z = 0.0", "z = 2000.0", "operation 1 (face): the operation has nothing", "allowance"),
+        ("z = 0.0", "z = 2000.0", "operation 1 (face): the operation lies outside", "keep"),
         ("z = 0.0\n", "z = 0.2\n", "bar.toml:23: operation 2 (cylinder): mater", "in front first"),
     ],
 )
@@ -223,8 +241,8 @@ def test_a_diameter_that_the_slide_cannot_reach_is_refused() -> None:
 
 def test_too_many_operations_are_refused(machine: Machine) -> None:
     cylinder = '[[operation]]\ntype = "cylinder"\nz = [0.0, -10.0]\ndiameter = 15.0\n'
-    with pytest.raises(PartError, match="the number of operations is wrong: 49 operations"):
-        Part.parse(TEXT + 47 * cylinder).check(machine)
+    with pytest.raises(PartError, match="the number of operations is wrong: 65 operations"):
+        Part.parse(TEXT + 63 * cylinder).check(machine)
 
 
 @pytest.mark.parametrize("broken", ["operation = []", "operation = 3", "[operation]"])

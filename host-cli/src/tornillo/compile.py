@@ -42,11 +42,6 @@ class Origin(NamedTuple):
     kind: str
     operation: Operation
 
-    @property
-    def title(self) -> str:
-        """What a message calls it."""
-        return self.operation.title
-
 
 @dataclass(frozen=True)
 class Compiled:
@@ -146,7 +141,8 @@ class _Compiler:
         (z, x), segments = path_segments(path, self.grid, exact=self.tip)
         if not segments:
             text = REFUSAL_TEXTS[Refusal.EMPTY_CUT]
-            return None, [fault(operation, 0, f"{text.cause}: it is shorter than a step", "")], []
+            message = f"{text.cause}: it is shorter than a step"
+            return None, [fault(operation, 0, message, text.remedy)], []
         return Cutting(z, x, segments), [], notes
 
     def _least_x(self, operation: Operation) -> float:

@@ -20,7 +20,7 @@ def explain(violation: Violation, compiled: Compiled, source: Source) -> PartErr
     if violation.record >= 0:
         origin = compiled.origins[violation.record]
         place = _place(violation, origin, source)
-        what = f"{origin.title}: "
+        what = "" if place[0] == "cut" else f"{origin.operation.title}: "
         if violation.refusal is Refusal.EMPTY_CUT and violation.key == "end.z":
             remedy = _empty_cut_remedy(origin.operation)
     detail = f": {violation.detail}" if violation.detail else ""

@@ -89,7 +89,10 @@ def _moved(element: Element, nose: float) -> Element:
 
 
 class _Centre:
-    """The path of the nose's centre along a contour."""
+    """The path of the nose's centre along a contour.
+
+    `_touching` are the parts of it on which the nose touches the work.
+    """
 
     def __init__(self, whole: list[Element], nose: float, fine: float) -> None:
         """Along every piece for itself; raises NoseError for one that is too narrow."""
@@ -97,6 +100,7 @@ class _Centre:
         self._nose = nose
         self._fine = fine
         self._moved = [_moved(element, nose) for element in whole]
+        self._touching = list(self._moved)
         self._rolls: dict[int, Arc] = {}
 
     def turn_corner(self, number: int) -> None:
@@ -115,6 +119,9 @@ class _Centre:
             place = min(places, key=lambda at: distance(at, a.end) + distance(at, b.start))
             self._moved[number] = replace(a, end=place)
             self._moved[number + 1] = replace(b, start=place)
+            if angle > 0:
+                self._touching[number] = replace(self._touching[number], end=place)
+                self._touching[number + 1] = replace(b, start=place)
         elif distance(a.end, b.start) < self._fine:
             self._moved[number] = replace(a, end=b.start)
         else:
@@ -126,7 +133,7 @@ class _Centre:
         for number in range(first, last):
             if number - 1 in self._rolls:
                 path.append(self._rolls[number - 1])
-            _must_run_on(self._whole[number], self._moved[number])
+            _must_run_on(self._whole[number], self._touching[number])
             path.append(self._moved[number])
         return path
 

@@ -101,16 +101,25 @@ class Part:
     def problems(self, machine: Machine) -> Iterator[PartError]:
         """Everything that `machine` would refuse.
 
-        First what the tools cannot cut, which only the host can see; then what the chip would
-        refuse too.
+        First what is wrong with the part as a whole; then what the tools cannot cut, which only
+        the host can see, or else what the chip would refuse operation by operation.
         """
         compiled = self.compiled(machine)
+        violations = list(check(compiled.image, Scale(self.units, machine)))
+        whole = [violation for violation in violations if violation.record < 0]
+        for violation in whole:
+            yield explain(violation, compiled, self.source)
+        if any(violation.refusal is Refusal.STOCK for violation in whole):
+            return
         for fault in compiled.faults:
             yield self.source.error(fault.place, fault.message, fault.remedy)
-        scale = Scale(self.units, machine)
-        for violation in check(compiled.image, scale):
-            if not compiled.faults or not violation.operation:
-                yield explain(violation, compiled, self.source)
+        told: set[str] = set()
+        for violation in violations:
+            if violation.record >= 0 and not compiled.faults:
+                error = explain(violation, compiled, self.source)
+                if str(error) not in told:
+                    yield error
+                told.add(str(error))
 
     def notes(self, machine: Machine) -> tuple[str, ...]:
         """What will be left standing although the part is accepted, one sentence each."""

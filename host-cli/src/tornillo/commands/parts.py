@@ -181,12 +181,12 @@ def delete(part: str) -> None:
     with connected() as lathe:
         found = lathe.find(part)
         lathe.delete(found.slot)
-    click.echo(f"{found.name} is deleted, {_units(found.units)} of the store are free again")
+    click.echo(f"{found.name} is deleted, {_units(found.units)} free again")
 
 
 def _units(count: int) -> str:
-    """A number of units."""
-    return f"{count} {'unit' if count == 1 else 'units'}"
+    """A number of units that are something."""
+    return f"{count} {'unit is' if count == 1 else 'units are'}"
 
 
 VERBS = (check, upload, download, list_parts, select, delete)

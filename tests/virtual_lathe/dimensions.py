@@ -110,9 +110,8 @@ class Ruler:
             column += direction
         return self._surface.z_of(column)
 
-    def _front_of(self, radius: float) -> float:
+    def _front_of(self, radius: float, radii: list[float]) -> float:
         """Return the z up to which metal thicker than a radius reaches."""
-        radii = self._surface.radii
         thick = (column for column in reversed(range(len(radii))) if radii[column] > radius)
         return self._surface.z_of(min(next(thick, -1) + 1, len(radii) - 1))
 
@@ -123,7 +122,12 @@ class Ruler:
     # -- operations -------------------------------------------------------------------------------
 
     def _face(self, name: str, face: Face) -> Entry:
-        front = self._front_of(face.drawn.radius + 0.5)
+        thick = face.drawn.radius + 0.5
+        front = self._front_of(thick, self._surface.radii)
+        behind, _ = self._contour.both_sides(face.z)
+        if behind <= thick:
+            # A later operation has turned the end to a point, which is thin by itself.
+            front += face.drawn.length - self._front_of(thick, self._contour.sample(PER_STEP))
         return self._length(f"{name} z", face.drawn.length, front)
 
     def _cylinder(self, owner: int, name: str, cylinder: Cylinder) -> list[Entry]:
@@ -168,7 +172,7 @@ class Ruler:
         _, ahead = self._contour.both_sides(back)
         height = self._below_edge(max(0.0, cut.radius), ahead)
         wall = self._wall(back - cut.width / 2, height, 1)
-        front = self._front_of(0.0)
+        front = self._front_of(0.0, self._surface.radii)
         wanted_front = max((p.high for p in self._contour.pieces if p.segment.end.x > 0), default=0)
         return self._length(f"{name} length", wanted_front - cut.z, front - wall)
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
 from virtual_lathe.dimensions import Ruler
 from virtual_lathe.driver import Driver
-from virtual_lathe.part import Cylinder, Groove, PartOff, Turned, WantedPart
+from virtual_lathe.part import Cylinder, Groove, PartOff, Turned, WantedPart, read_part
 from virtual_lathe.shape import Arc, Line, Point
 from virtual_lathe.tool import Tool
 from virtual_lathe.workpiece import Stock, Workpiece
@@ -151,6 +152,25 @@ def test_a_profile_is_measured_segment_by_segment() -> None:
     (angle,) = Ruler(work.surface(), wanted, 10_000, 10_000).angles()
     assert angle["wanted_degrees"] == pytest.approx(math.degrees(math.atan(0.5)), abs=1e-3)
     assert angle["error_steps"] == pytest.approx(1.0, abs=0.1)
+
+
+def test_a_face_that_becomes_a_point_is_where_it_was(tmp_path: Path) -> None:
+    points = "{ z = 0, diameter = 0 }, { z = -1, diameter = 0.4 }"
+    file = tmp_path / "point.toml"
+    file.write_text(
+        '[part]\nname = "point"\nunits = "mm"\n[stock]\ndiameter = 6\nlength = 8\n'
+        'allowance = 0.2\n[[operation]]\ntype = "face"\nz = 0\n'
+        f'[[operation]]\ntype = "profile"\npoints = [ {points} ]\n',
+        encoding="utf-8",
+    )
+    wanted = read_part(file, 10_000, 10_000)
+    for off in (0, 2):
+        work = Workpiece(Stock(300, 800, 20), tool=Tool())
+        driver = Driver(work, 320, 60)
+        driver.along((320, off), (0, off), (20, -100 + off), (320, -100 + off))
+        face, *_ = work.dimensions(wanted, 10_000, 10_000)
+        assert face["name"] == "face 1 z"
+        assert face["error_steps"] == pytest.approx(off, abs=MODEL)
 
 
 # -- edges -----------------------------------------------------------------------------------------

@@ -255,13 +255,14 @@ uint16_t machine_permille(void)
     }
     one = (uint16_t)PERMILLE_DONE / part_operations;
     permille = (uint16_t)(done - 1) * one;
-    if (passes_passes() != 0) {
-        factor_1 = one;
-        factor_2 = passes_pass();
-        divisor = passes_passes() + 1;
-        permille += proportion();
+    factor_1 = one;
+    factor_2 = passes_pass();
+    divisor = passes_passes(); /* 0: not known, but not fewer than done */
+    if (divisor == 0) {
+        divisor = factor_2;
     }
-    return permille;
+    divisor++;
+    return permille + proportion();
 }
 
 /* Names the alarm for what the guard has stopped. */

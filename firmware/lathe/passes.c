@@ -166,19 +166,12 @@ void passes_begin(uint8_t slot, uint8_t step)
     on_the_way();
 }
 
-/* Goes to park; what is at contour_own comes afterwards. */
-static void pause(void)
-{
-    on_the_way();
-    stage = STAGE_PARK_X;
-}
-
-/* Takes the record at contour_own. */
+/* Takes the record at contour_own; what is parked for comes afterwards. */
 static void take_record(void)
 {
     if (contour_own >= part_length) {
         passes_more = 0;
-        pause();
+        stage = STAGE_PARK_X;
         return;
     }
     part_record = contour_own;
@@ -188,7 +181,7 @@ static void take_record(void)
                                     : part_type != OPERATION_CUT && stepping &&
                                           operation != 0) {
         if (!parked) {
-            pause();
+            stage = STAGE_PARK_X;
             return;
         }
     }
@@ -197,7 +190,8 @@ static void take_record(void)
     } else {
         operation++;
         if (part_type == OPERATION_PAUSE) {
-            pause();
+            on_the_way();
+            stage = STAGE_PARK_X;
         } else if (cuts_begin()) {
             stage = STAGE_CLEAR;
             return;

@@ -39,8 +39,8 @@ uint8_t passes_source(void);
 extern uint8_t passes_more;
 
 /* What the tool is doing now, for the operator: operation 1..operations,
-   pass 1..passes (0 = on the way, or not known: the next operation is being
-   worked out already). */
+   pass 1..passes (0 = on the way; passes 0 = not known: the next operation is
+   being worked out already). */
 uint8_t passes_operation(void);
 uint8_t passes_pass(void);
 uint8_t passes_passes(void);

@@ -240,8 +240,8 @@ least_speed:
         copy_3  wanted, least
 try_brakes:
         copy_3  _ramp_speed, next
-        compare least, _ramp_speed
-        bc      no_need
+        compare _ramp_start, _ramp_speed
+        bc      no_need                 ; it may change at once
         rcall   too_fast
         bc      slower                  ; towards least
 no_need:

@@ -89,13 +89,23 @@ class Watch:
         return all(self._work.radius_at(place) < x for place in front)
 
     def approach(self) -> list[Movement]:
-        """Return the movements up to the last step of both slides at once."""
+        """Return the movements of the first way on which both slides step at once.
+
+        Behind the last step of both it ends with those of the slide that has the longer way.
+        """
         both = [
             number
             for number, (first, then) in enumerate(pairwise(self.movements))
             if then.cycle - first.cycle < SAME_STEP
         ]
-        return self.movements[: both[-1] + 2] if both else []
+        if not both:
+            return []
+        end = both[-1] + 2
+        axes = [movement.axis for movement in self.movements[:end]]
+        longer = max(axes, key=axes.count)
+        while end < len(self.movements) and self.movements[end].axis == longer:
+            end += 1
+        return self.movements[:end]
 
     def strokes(self) -> list[Stroke]:
         """Return what follows the approach as strokes of one slide each."""

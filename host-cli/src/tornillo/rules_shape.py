@@ -159,6 +159,8 @@ def _segment_rules(
     if segment.kind is not SegmentKind.LINE:
         if not arc_exists(segment):
             yield Found(Refusal.ARC, "end.x", f"from {here}")
+        if len(subs) > 1 and facing:
+            yield Found(Refusal.DIRECTION, "end.z", f"the diameter gets smaller behind {here}")
         if len(subs) > 1:
             yield from _in_order([*ground.outside(subs[0].ze, subs[0].xe, "end")])
     yield from _edge_rules(segment, subs, ground)

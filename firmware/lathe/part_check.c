@@ -452,12 +452,8 @@ static uint8_t check_records(void)
         }
         lowest = part_stock_radius;
         left -= part_size;
-        {
-            uint16_t next = part_record + part_size;
-
-            reason = check_record(number);
-            contour_own = next;
-        }
+        reason = check_record(number); /* comes back to this record */
+        contour_own += part_size;
         if (reason != 0) {
             return reason;
         }

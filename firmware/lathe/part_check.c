@@ -455,7 +455,7 @@ static uint8_t check_records(void)
         }
         lowest = part_stock_radius;
         left -= part_size;
-        reason = check_record(number);
+        reason = check_record(number); /* comes back to this record */
         contour_own += part_size;
         if (reason != 0) {
             return reason;

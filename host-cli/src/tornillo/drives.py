@@ -120,7 +120,8 @@ def sizes(move: Move) -> tuple[float, float]:
     last = math.atan2(move.dx - move.cx / CENTRE_UNIT, move.dz - move.cz / CENTRE_UNIT)
     sweep = (last - first if move.kind is SegmentKind.CONVEX else first - last) % math.tau
     low = first if move.kind is SegmentKind.CONVEX else first - sweep
-    return radius * (_faster(low + sweep) - _faster(low)), radius * sweep
+    entries = radius * (_faster(low + sweep) - _faster(low))
+    return max(entries, abs(move.dx), abs(move.dz)), radius * sweep
 
 
 def x_turns(move: Move) -> list[int]:

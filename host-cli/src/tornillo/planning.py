@@ -8,7 +8,7 @@ Whole numbers only, and the same ones as on the chip: what `tornillo plan` and `
 show is what will be cut. docs/passes.md explains it with pictures.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from tornillo.image import PartImage, Record
 from tornillo.machine import Machine
@@ -109,13 +109,32 @@ class Planner:
             halt = Halt.DRILL if record.kind else Halt.PAUSE
             yield self._park(halt, record.message.decode("ascii", "replace"))
         elif isinstance(record, PlungeRecord):
-            chain = plunge_chain(record, self.tool.width)
-            yield from self._plunge(record, chain)
-            self.material.cut(chain)
+            yield from self._plunge(record, self._chain(record))
         else:
-            chain = contour_chain(record)
-            yield from self._contour(record, chain)
-            self.material.cut(chain)
+            yield from self._contour(record, self._chain(record))
+        self._cut_away(record)
+
+    def suppose(self, records: Iterable[Record]) -> None:
+        """Go on as after `records`, without their moves."""
+        for record in records:
+            if isinstance(record, ToolRecord):
+                self._tool = record
+            elif isinstance(record, CutRecord):
+                self._cut = record
+            else:
+                self.operation += 1
+                self._cut_away(record)
+
+    def _chain(self, record: ContourRecord | PlungeRecord) -> Chain:
+        """The contour of an operation."""
+        if isinstance(record, PlungeRecord):
+            return plunge_chain(record, self.tool.width)
+        return contour_chain(record)
+
+    def _cut_away(self, record: Record) -> None:
+        """From now on what an operation cuts is gone."""
+        if isinstance(record, ContourRecord | PlungeRecord):
+            self.material.cut(self._chain(record))
 
     def _change_tool(self, record: ToolRecord) -> Iterator[Stop]:
         """Park for another tool; positions are then those of the new one."""

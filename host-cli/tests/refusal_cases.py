@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """For every rule of a part image ten images or more that break it: (bytes, operation)."""
 
+from typing import Any
+
 from images import (
     BAR,
     CONCAVE,
@@ -53,7 +55,7 @@ def plunge(**changes: int) -> Case:
     return cut(GROOVE._replace(**changes), tool=PARTING), 1
 
 
-def with_tool(**changes: int) -> Case:
+def with_tool(**changes: Any) -> Case:
     """GOOD with another tool."""
     return image(TOOL._replace(**changes), CUT, FACE, BAR), 1
 

@@ -128,7 +128,7 @@ def test_the_port_is_closed_when_something_else_answers(
 ) -> None:
     chip.protocol = 9
     monkeypatch.setattr("tornillo.lathe.open_port", lambda _name: port)
-    with pytest.raises(LinkError, match="speaks protocol 9, this tornillo speaks 1") as caught:
+    with pytest.raises(LinkError, match="speaks protocol 9, this tornillo speaks 2") as caught:
         Lathe.open("P")
     assert "update the firmware" in caught.value.remedy
     assert port.closed

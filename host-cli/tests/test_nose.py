@@ -169,7 +169,8 @@ def test_the_nose_rolls_round_outside_corners_and_meets_in_inside_ones() -> None
     assert [type(element) for element in path] == [Line, Arc, Line]
     roll = path[1]
     assert isinstance(roll, Arc)
-    assert (roll.convex, roll.radius) == (True, pytest.approx(0.4))
+    assert roll.convex
+    assert roll.radius == pytest.approx(0.4)
     path = tip_path(lines((0, 1), (-2, 1), (-4, 3)), 0.4, FINE)
     assert [type(element) for element in path] == [Line, Line]
     assert path[0].end == path[1].start

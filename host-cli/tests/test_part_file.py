@@ -123,7 +123,12 @@ def test_whole_numbers_are_numbers_too() -> None:
             "[",
         ),
         ("z = [0.0, -10.0]", 'z = [0.0, "a"]', "operation 2 (cylinder): z must be a number", "quo"),
-        ("z = 0.0", "z = 0.0\ndepth = 1", 'operation 1 (face): unknown key "depth"', "known keys"),
+        (
+            "z = 0.0",
+            "z = 0.0\ndepth = 1",
+            'operation 1 (face): unknown key "depth"',
+            "depth_of_cut",
+        ),
         ("[cut]", "[cut]\nfeed = 1", "this is not TOML", "missing"),
     ],
 )

@@ -24,8 +24,10 @@ DEEPEST = 8
 CENTRE_MAX = (1 << 23) - 1
 SAMPLES = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 #: How far, in steps, the centre is moved along the bisector until the chip accepts the arc.
-SHIFTS = tuple(
-    sign * number / 16 for number in range(33) for sign in ((1,) if number == 0 else (1, -1))
+SHIFTS = (
+    0.0,
+    *(sign * n / 16 for n in range(1, 33) for sign in (1, -1)),
+    *(sign * 2 * 1.15**n for n in range(1, 40) for sign in (1, -1)),
 )
 
 
@@ -141,50 +143,51 @@ def _bow(start: Point, end: Point, middle: Point) -> float:
 def _fit(
     curve: _Curve, span: tuple[float, float], start: tuple[int, int], end: tuple[int, int]
 ) -> Segment | None:
-    """The one arc along `span`, or None when no circle does."""
-    if end[0] >= start[0]:
+    """The one arc along `span`, or None when no circle does.
+
+    Its centre is the place nearest to that of the true curve that is as far from the rounded
+    start as from the rounded end.
+    """
+    true = _circle(curve, span)
+    if true is None or end[0] >= start[0]:
         return None
-    low, high = span
-    if not _circular(curve, span):
-        return None
-    best = _centre(Point(*start), Point(*end), curve.at((low + high) / 2), curve.convex)
-    if best is None:
-        return None
-    centre, normal = best
+    first, last = Point(*start), Point(*end)
+    normal = last.minus(first).unit.normal
+    halfway = Point((first.z + last.z) / 2, (first.x + last.x) / 2)
+    centre = halfway.plus(normal, true.minus(halfway).dot(normal))
+    middle = curve.at(sum(span) / 2)
+
+    def off(moved: Point) -> float:
+        return abs(moved.minus(middle).length - moved.minus(first).length)
+
+    limit = off(centre) + CLOSE
     for shift in SHIFTS:
-        segment = _segment(start, end, centre.plus(normal, shift), curve.convex)
-        if max(abs(segment.cz), abs(segment.cx)) <= CENTRE_MAX and arc_exists(segment):
+        moved = centre.plus(normal, shift)
+        segment = _segment(start, end, moved, curve.convex)
+        small = max(abs(segment.cz), abs(segment.cx)) <= CENTRE_MAX
+        if small and off(moved) <= limit and arc_exists(segment):
             return segment
     return None
 
 
-def _centre(start: Point, end: Point, middle: Point, convex: bool) -> tuple[Point, Point] | None:
-    """Centre of the circle through both ends, as high as `middle`, and the way to the tool."""
-    normal = end.minus(start).unit.normal
-    half = end.minus(start).length / 2
-    halfway = Point((start.z + end.z) / 2, (start.x + end.x) / 2)
-    side = 1 if convex else -1
+def _circle(curve: _Curve, span: tuple[float, float]) -> Point | None:
+    """The centre of the circle that follows the true curve closely, None when none does."""
+    low, high = span
+    first, middle, last = curve.at(low), curve.at((low + high) / 2), curve.at(high)
+    normal = last.minus(first).unit.normal
+    half = last.minus(first).length / 2
+    halfway = Point((first.z + last.z) / 2, (first.x + last.x) / 2)
+    side = 1 if curve.convex else -1
     bow = middle.minus(halfway).dot(normal) * side
-    if bow <= 0:
-        return None
-    radius = (bow * bow + half * half) / (2 * bow)
+    radius = (bow * bow + half * half) / (2 * bow) if bow > 0 else math.inf
     if radius > RADIUS_MAX:
         return None
-    return halfway.plus(normal, side * (bow - radius)), normal
-
-
-def _circular(curve: _Curve, span: tuple[float, float]) -> bool:
-    """Whether a circle through ends and middle follows the true curve closely enough."""
-    low, high = span
-    found = _centre(curve.at(low), curve.at(high), curve.at((low + high) / 2), curve.convex)
-    if found is None:
-        return False
-    centre, _ = found
-    radius = centre.minus(curve.at(low)).length
-    return all(
-        abs(centre.minus(curve.at(low + (high - low) * part)).length - radius) <= CLOSE
-        for part in SAMPLES
-    )
+    centre = halfway.plus(normal, side * (bow - radius))
+    for part in SAMPLES:
+        place = curve.at(low + (high - low) * part)
+        if abs(centre.minus(place).length - radius) > CLOSE:
+            return None
+    return centre
 
 
 def _segment(start: tuple[int, int], end: tuple[int, int], centre: Point, convex: bool) -> Segment:

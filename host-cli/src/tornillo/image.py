@@ -164,9 +164,8 @@ def record_type(record: Record) -> OperationType:
 
 def _record_size(record: Record) -> int:
     """The bytes that a record takes."""
-    kind = record_type(record)
-    tail = len(record[-1]) if kind in OPEN_TYPES and isinstance(record[-1], bytes) else 0
-    return OPERATION_RECORDS[kind].size + tail
+    tail = len(record[-1]) if isinstance(record, PauseRecord | ContourRecord) else 0
+    return OPERATION_RECORDS[record_type(record)].size + tail
 
 
 def pack_record(record: Record) -> bytes:
@@ -175,11 +174,9 @@ def pack_record(record: Record) -> bytes:
     layout = OPERATION_RECORDS[kind]
     fields = tuple(record)
     tail = b""
-    if kind in OPEN_TYPES:
-        *closed, tail = fields
-        fields = tuple(closed)
-    first, *rest = fields
-    return layout.pack(kind, first, layout.size + len(tail), *rest) + tail
+    if isinstance(record, PauseRecord | ContourRecord):
+        fields, tail = fields[:-1], record[-1]
+    return layout.pack(kind, fields[0], layout.size + len(tail), *fields[1:]) + tail
 
 
 def unpack_header(data: bytes) -> ImageHeader:

@@ -66,9 +66,10 @@ class Violation(NamedTuple):
 def check(image: PartImage, scale: Scale) -> Iterator[Violation]:
     """Every rule that `image` breaks on the machine of `scale`, the chip's answer first.
 
-    At most one for each contour and plunge.
+    At most one for each contour and plunge. Not whether the records are as many as the header
+    says.
     """
-    broken = list(header_rules(image.header, len(image.operations), scale))
+    broken = list(header_rules(image.header, scale))
     if image.size > PART_IMAGE_MAX:
         detail = f"{image.size} bytes, at most {PART_IMAGE_MAX}"
         yield Violation(Refusal.LENGTH, 0, -1, "operation", detail)
@@ -87,7 +88,7 @@ def verdict(data: bytes, machine: Machine) -> Violation | None:
         if len(data) > PART_IMAGE_MAX:
             raise ImageError(Refusal.LENGTH, 0)
         header = unpack_header(data)
-        for violation in header_rules(header, header.operation_count, scale):
+        for violation in header_rules(header, scale):
             return violation
         return _records_verdict(data, _Judge(header, scale))
     except ImageError as error:
@@ -149,8 +150,8 @@ class _Judge:
         return plunge_rules(record, ground)
 
 
-def header_rules(header: ImageHeader, count: int, scale: Scale) -> Iterator[Violation]:
-    """The rules of the header with `count` operations, in the chip's order."""
+def header_rules(header: ImageHeader, scale: Scale) -> Iterator[Violation]:
+    """The rules of the header, in the chip's order."""
 
     def broken(refusal: Refusal, key: str, detail: str) -> Violation:
         return Violation(refusal, 0, -1, key, detail)
@@ -163,8 +164,8 @@ def header_rules(header: ImageHeader, count: int, scale: Scale) -> Iterator[Viol
     if (header.step_x_nm, header.step_z_nm) != (machine.step_x_nm, machine.step_z_nm):
         yield broken(Refusal.STEP_SIZE, "", f"{header.step_x_nm} and {header.step_z_nm} nm")
     yield from (broken(Refusal.STOCK, *found) for found in _stock(header, scale))
-    if not 1 <= count <= OPERATIONS_MAX:
-        yield broken(Refusal.OPERATION_COUNT, "operation", f"{count} operations")
+    if not 1 <= header.operation_count <= OPERATIONS_MAX:
+        yield broken(Refusal.OPERATION_COUNT, "operation", f"{header.operation_count} operations")
     if not 1 <= header.retract <= POSITION_MAX:
         yield broken(Refusal.RETRACT, "cut.retract", f"{header.retract} steps")
     yield from (broken(Refusal.OUTSIDE_TRAVEL, *found) for found in _clear(header, scale, 0, 0))

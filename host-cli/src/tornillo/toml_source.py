@@ -223,5 +223,6 @@ class Table:
 
 def _nearest(word: str, known: "list[str] | tuple[str, ...]") -> str:
     """A question for the known word nearest to `word`; empty when none is near."""
-    close = difflib.get_close_matches(word, known, n=1)
+    begun = [name for name in known if len(word) > 2 and name.startswith(word)]
+    close = begun or difflib.get_close_matches(word, known, n=1)
     return f'did you mean "{close[0]}"?' if close else ""

@@ -15,10 +15,14 @@
         radix   dec
 
         global  __mulint, __mullong, __divuint, __moduint, __divulong
+        global  _factor_1, _factor_2, _divisor, _product, _proportion
 
 arithmetic_data udata_acs
+_factor_1
 first           res 4                   ; dividend, then quotient
+_factor_2
 second          res 4
+_divisor        res 2
 remainder       res 4
 bits            res 1
 
@@ -58,8 +62,27 @@ result_remainder:
         movf    remainder, W, A
         return
 
+; 32 bits of factor_1 times factor_2, see arithmetic.h.
+_product:
+        clrf    first + 2, A
+        clrf    first + 3, A
+        clrf    second + 2, A
+        clrf    second + 3, A
+        bra     multiply
+; The same, divided by divisor.
+_proportion:
+        rcall   _product
+        movff   remainder, first
+        movff   remainder + 1, first + 1
+        movff   remainder + 2, first + 2
+        movff   remainder + 3, first + 3
+        movff   _divisor, second
+        movff   _divisor + 1, second + 1
+        bra     divide
+
 __mullong:
         arguments 4
+multiply:
         clrf    remainder + 2, A
         clrf    remainder + 3, A
         movf    first, W, A
@@ -159,6 +182,7 @@ less_16:
 
 __divulong:
         arguments 4
+divide:
         clrf    remainder, A
         clrf    remainder + 1, A
         clrf    remainder + 2, A

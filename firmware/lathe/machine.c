@@ -2,9 +2,11 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "lathe/machine.h"
+#include "arithmetic.h"       /* proportions */
 #include "config.h"           /* shortest pulse */
 #include "lathe/guard.h"      /* trips */
 #include "lathe/homing.h"     /* homing phases */
+#include "lathe/part.h"       /* number of operations */
 #include "lathe/part_check.h" /* before every run */
 #include "lathe/passes.h"     /* moves of a part */
 #include "link/protocol.h"    /* states, alarms, errors */
@@ -12,6 +14,7 @@
 #include "motion/ramp.h"      /* hold */
 #include "motion/stream.h"    /* freeze, positions */
 #include "panel/inputs.h"     /* buttons */
+#include "panel/led.h"        /* number of the selected part */
 #include "store/parts.h"      /* selected part */
 #include "store/settings.h"   /* settings */
 #include "tick.h"             /* idle time */
@@ -24,7 +27,6 @@ uint8_t machine_slot;
 
 static uint8_t finished;        /* the last run came to its end */
 static uint16_t moved_at;       /* when something last moved, ms */
-static uint32_t permille_steps; /* tool steps of a thousandth of the run */
 
 static void arm(void)
 {
@@ -97,7 +99,7 @@ uint8_t machine_home(void)
     return error;
 }
 
-uint8_t machine_run(uint8_t slot)
+uint8_t machine_run(uint8_t slot, uint8_t step)
 {
     uint8_t error = not_ready();
 
@@ -123,8 +125,7 @@ uint8_t machine_run(uint8_t slot)
     machine_state = STATE_RUNNING;
     finished = 0;
     ramp_set_override(100);
-    passes_begin(slot);
-    permille_steps = passes_total_steps / PERMILLE_DONE + 1;
+    passes_begin(slot, step);
     path_begin();
     return ERROR_OK;
 }
@@ -145,6 +146,11 @@ uint8_t machine_hold(void)
 uint8_t machine_resume(void)
 {
     if (machine_state == STATE_RUNNING) {
+        return ERROR_OK;
+    }
+    if (machine_state == STATE_PAUSE) {
+        machine_state = STATE_RUNNING;
+        path_begin();
         return ERROR_OK;
     }
     if (machine_state != STATE_HOLD) {
@@ -179,6 +185,7 @@ uint8_t machine_stop(void)
         break;
     case STATE_RUNNING:
     case STATE_HOLD:
+    case STATE_PAUSE:
         path_cancel();
         machine_state = STATE_IDLE;
         break;
@@ -224,18 +231,38 @@ uint8_t machine_zero(uint8_t axis, int16_t value)
                         zero - value);
 }
 
+uint8_t machine_running(void)
+{
+    return machine_state == STATE_RUNNING || machine_state == STATE_HOLD ||
+           machine_state == STATE_PAUSE;
+}
+
 uint16_t machine_permille(void)
 {
     uint16_t permille;
+    uint16_t one; /* operation */
+    uint8_t done;
 
     if (finished) {
         return PERMILLE_DONE;
     }
-    if (machine_state != STATE_RUNNING && machine_state != STATE_HOLD) {
+    if (!machine_running()) {
         return 0;
     }
-    permille = (uint16_t)(path_steps_made() / permille_steps);
-    return permille < PERMILLE_DONE ? permille : PERMILLE_DONE - 1;
+    done = passes_operation();
+    if (done == 0) {
+        return 0;
+    }
+    one = (uint16_t)PERMILLE_DONE / part_operations;
+    permille = (uint16_t)(done - 1) * one;
+    factor_1 = one;
+    factor_2 = passes_pass();
+    divisor = passes_passes(); /* 0: not known, but not fewer than done */
+    if (divisor == 0) {
+        divisor = factor_2;
+    }
+    divisor++;
+    return permille + proportion();
 }
 
 /* Names the alarm for what the guard has stopped. */
@@ -264,12 +291,16 @@ static void serve_buttons(void)
             machine_stop();
         }
     } else if (presses & INPUT_HOLD) {
-        machine_hold();
+        if (machine_state == STATE_IDLE) {
+            led_show(parts_select_next());
+        } else {
+            machine_hold();
+        }
     } else if (presses & INPUT_RUN) {
-        if (machine_state == STATE_HOLD) {
+        if (machine_state == STATE_HOLD || machine_state == STATE_PAUSE) {
             machine_resume();
         } else if (machine_homed) {
-            machine_run(SLOT_NONE);
+            machine_run(SLOT_NONE, 0);
         } else {
             machine_home();
         }
@@ -315,8 +346,8 @@ void machine_poll(void)
                 machine_state == STATE_HOLD) &&
                !path_busy() && !guard_tripped) {
         /* The flag is read last: a trip may end the motion at any moment. */
-        finished = 1;
-        machine_state = STATE_IDLE;
+        finished = !passes_more;
+        machine_state = passes_more ? STATE_PAUSE : STATE_IDLE;
     }
     if (path_refused && !machine_quiet()) {
         raise(ALARM_PATH, 0);

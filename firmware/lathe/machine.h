@@ -4,15 +4,19 @@
  * SPDX-License-Identifier: Apache-2.0
  *
  *   state     RUN          HOLD    STOP           part/homing ends  trip
- *   IDLE      home, or     -       -              -                 ALARM
+ *   IDLE      home, or     select  -              -                 ALARM
  *             start part
  *   HOMING    -            -       ALARM          IDLE, homed       ALARM
- *   RUNNING   -            HOLD    IDLE           IDLE              ALARM
+ *   RUNNING   -            HOLD    IDLE           IDLE or PAUSE     ALARM
  *   HOLD      RUNNING      -       IDLE           -                 ALARM
+ *   PAUSE     RUNNING      -       IDLE           -                 ALARM
  *   ALARM     -            -       IDLE           -                 ALARM
  *
  * RUN and STOP are buttons; the commands HOME, RUN and RESUME are the three
- * meanings of the first, STOP and RESET those of the second. A trip is the
+ * meanings of the first, STOP and RESET those of the second. HOLD in IDLE
+ * selects the next part; the LED flashes its number. In PAUSE the slides are
+ * parked and the part waits for a person: a message, another tool, or the end
+ * of an operation when it is run step by step. A trip is the
  * emergency stop, a limit switch while homed, or a step stream that ran dry;
  * it makes the position untrusted. ALARM ends by the command RESET or the
  * STOP button, when its cause is gone; then IDLE, not homed. Acknowledging
@@ -39,7 +43,8 @@ void machine_init(uint8_t settings_good);
 void machine_poll(void);
 
 uint8_t machine_home(void);
-uint8_t machine_run(uint8_t slot);
+/* step: pause after every operation. */
+uint8_t machine_run(uint8_t slot, uint8_t step);
 uint8_t machine_hold(void);
 uint8_t machine_resume(void);
 uint8_t machine_stop(void);
@@ -56,6 +61,9 @@ uint8_t machine_zero(uint8_t axis, int16_t value);
 
 /* Takes settings that motion depends on into use. */
 void machine_apply_settings(void);
+
+/* A part has been begun and is not complete. */
+uint8_t machine_running(void);
 
 /* Progress of the run, 0..1000. */
 uint16_t machine_permille(void);

@@ -9,74 +9,84 @@
 int16_t part_stock_radius;
 int16_t part_stock_length;
 int16_t part_stock_front;
-uint16_t part_depth_of_cut;
-uint16_t part_allowance;
-uint16_t part_retract;
+int16_t part_retract;
 uint8_t part_operations;
+uint16_t part_length;
 
 uint16_t part_record;
 uint8_t part_type;
-uint8_t part_size;
-uint16_t part_flags;
-int16_t part_low;
-int16_t part_high;
-int16_t part_x;
+uint8_t part_kind;
+uint16_t part_size;
 
-void part_reopen(uint8_t slot)
-{
-    parts_open(slot);
-}
+uint16_t part_below;
+uint16_t part_width;
+uint16_t part_back;
+uint16_t part_front;
+int16_t part_offset_x;
+int16_t part_offset_z;
+uint8_t part_spring;
+uint16_t part_depth_of_cut;
+uint16_t part_allowance;
+uint16_t part_feed;
+uint16_t part_finish_feed;
+uint16_t part_spindle;
+uint16_t part_peck;
 
 /* The fields follow each other in the image: see link/protocol.toml. */
-void part_open(uint8_t slot)
+void part_open(uint8_t slot, uint16_t length)
 {
+    part_length = length;
     parts_open(slot);
     parts_seek(PART_IMAGE_OPERATION_COUNT_AT);
     part_operations = flash_read();
     parts_seek(PART_IMAGE_STOCK_RADIUS_AT);
-    part_stock_radius = flash_read_i16();
-    part_stock_length = flash_read_i16();
-    part_stock_front = flash_read_i16();
-    part_depth_of_cut = flash_read_u16();
-    part_allowance = flash_read_u16();
-    parts_seek(PART_IMAGE_RETRACT_AT);
+    part_stock_radius = flash_read_u16();
+    part_stock_length = flash_read_u16();
+    part_stock_front = flash_read_u16();
     part_retract = flash_read_u16();
 }
 
-void part_read_operation(void)
+void part_read_record(void)
 {
     parts_seek(part_record);
     part_type = flash_read();
-    part_size = flash_read();
-    part_flags = flash_read_u16();
-    part_high = part_stock_front;
-    if (part_type != OPERATION_FACE) {
-        part_high = flash_read_i16();
-    }
-    part_low = flash_read_i16();
-    part_x = flash_read_i16();
+    part_kind = flash_read();
+    part_size = flash_read_u16();
 }
 
 void part_first(void)
 {
     part_record = PART_IMAGE_HEADER_SIZE;
-    part_read_operation();
+    part_read_record();
 }
 
-void part_next(void)
+uint8_t part_next(void)
 {
     part_record += part_size;
-    part_read_operation();
+    if (part_record >= part_length) {
+        return 0;
+    }
+    part_read_record();
+    return 1;
 }
 
-uint32_t part_feed(void)
+void part_apply(void)
 {
-    parts_seek(PART_IMAGE_FEED_AT);
-    return flash_read_u32();
-}
-
-uint32_t part_finish_feed(void)
-{
-    parts_seek(PART_IMAGE_FINISH_FEED_AT);
-    return flash_read_u32();
+    if (part_type == OPERATION_TOOL) {
+        parts_seek(part_record + OPERATION_TOOL_BELOW_AT);
+        part_below = flash_read_u16();
+        part_width = flash_read_u16();
+        part_back = flash_read_u16();
+        part_front = flash_read_u16();
+        part_offset_x = flash_read_u16();
+        part_offset_z = flash_read_u16();
+    } else {
+        part_spring = part_kind;
+        part_depth_of_cut = flash_read_u16();
+        part_allowance = flash_read_u16();
+        part_feed = flash_read_u16();
+        part_finish_feed = flash_read_u16();
+        part_spindle = flash_read_u16();
+        part_peck = flash_read_u16();
+    }
 }

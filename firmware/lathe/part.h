@@ -1,17 +1,11 @@
 /*
- * Reads the image of one part, header and operations, into variables.
+ * Reads the image of one part, header and records, into variables.
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- * Both operations that can be cut so far remove a region: everything larger
- * than a radius between two ends.
- *
- *              part_low       part_high          part_x
- *   face       its z          the raw front      x_inner
- *   cylinder   z_end          z_start            x
- *
- * Numbers are part coordinates in steps. A 32-bit field that does not fit 16
- * bits reads as -32768 or 32767, which every range check refuses.
+ * Numbers are part coordinates in steps; link/protocol.toml has the layout of
+ * the image and the ranges. What a TOOL or CUT record says holds for the
+ * records behind it: part_apply() takes it over.
  *
  * Main loop only. part_open() must precede any other call, again after
  * somebody else has opened another slot.
@@ -25,35 +19,44 @@
 extern int16_t part_stock_radius;
 extern int16_t part_stock_length;
 extern int16_t part_stock_front;
+extern int16_t part_retract;
+extern uint8_t part_operations;
+extern uint16_t part_length; /* of the image, bytes */
+
+/* The record read last. */
+extern uint16_t part_record; /* its offset in the image */
+extern uint8_t part_type;
+extern uint8_t part_kind;
+extern uint16_t part_size;
+
+/* The tool and the cutting data in use, in the order of their records. */
+extern uint16_t part_below;
+extern uint16_t part_width;
+extern uint16_t part_back;
+extern uint16_t part_front;
+extern int16_t part_offset_x;
+extern int16_t part_offset_z;
+extern uint8_t part_spring;
 extern uint16_t part_depth_of_cut;
 extern uint16_t part_allowance;
-extern uint16_t part_retract;
-extern uint8_t part_operations;
-
-/* The operation read last. */
-extern uint16_t part_record; /* offset of its record in the image */
-extern uint8_t part_type;
-extern uint8_t part_size;
-extern uint16_t part_flags;
-extern int16_t part_low;
-extern int16_t part_high;
-extern int16_t part_x;
+extern uint16_t part_feed; /* 1/FEED_UNIT step/s */
+extern uint16_t part_finish_feed;
+extern uint16_t part_spindle;
+extern uint16_t part_peck;
 
 /* Chooses the slot and reads the header. */
-void part_open(uint8_t slot);
+void part_open(uint8_t slot, uint16_t length);
 
-/* Chooses the slot only: the header has been read before. */
-void part_reopen(uint8_t slot);
-
-/* Reads the first operation, or the one after the last one read. */
+/* Reads the first record, or the one after the last one read; part_next()
+   returns 0 at the end of the image. */
 void part_first(void);
-void part_next(void);
+uint8_t part_next(void);
 
-/* Reads the operation whose record is at part_record. */
-void part_read_operation(void);
+/* Reads the record at part_record; its fields are the next to be read from
+   flash. */
+void part_read_record(void);
 
-/* Feeds, 1/256 step/s. */
-uint32_t part_feed(void);
-uint32_t part_finish_feed(void);
+/* Takes a TOOL or CUT record, just read, into use. */
+void part_apply(void);
 
 #endif

@@ -3,24 +3,24 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- * Face and cylinder are the same thing with the axes exchanged: an infeed
- * axis on which the levels lie, and a cut axis along which each pass runs.
+ * A contour is roughed in levels, spread evenly between the material and the
+ * contour, so that none is deeper than the depth of cut and none is a sliver:
  *
- *                infeed axis, cut axis    levels              a pass runs
- *   cylinder     X            Z           from the largest    from in front
- *                                         radius left to x    to z_end
- *   face         Z            X           from the front left from outside
- *                                         to z                to x_inner
+ *   along Z    levels of x; a pass runs towards the chuck until the contour
+ *              rises above its level. Behind it the contour may fall again:
+ *              each pocket is cut to its bottom before the next one.
+ *   facing     levels of z; a pass runs from outside to the contour.
  *
- * A pass: infeed to its level in front of the material (rapid), cut (feed),
- * back off by the retract (rapid), return (rapid). Reversals, and with them
- * the dead steps, lie in the returns, where the tool is clear.
+ * Then the tool follows the contour, in one chain without a stop: at the
+ * finish allowance, on size, and again for every spring pass. A plunge goes
+ * straight in, place by place.
  *
- * Levels are spread evenly, so no pass is deeper than the depth of cut and
- * none is a sliver; the last is exactly on size. A cylinder with a finish
- * allowance gets one more pass for it at the finish feed. Material that
- * earlier operations have removed is not cut again. At the end X, then Z go
- * back to park.
+ * A pass: over to its place at a height where everything has been cut, in to
+ * its level (rapid where the material in front has gone, at the feed where it
+ * has not), cut, back off by the retract. What is material and what is air is
+ * asked from lathe/contour.h, so rapid moves run through air alone.
+ *
+ * Before a pause, before another tool and at the end X, then Z go to park.
  *
  * Main loop only. The part must have passed part_check().
  */
@@ -29,20 +29,20 @@
 
 #include <stdint.h>
 
-/* Prepares the part in a slot. */
-void passes_begin(uint8_t slot);
+/* Prepares the part in a slot; step: pause after every operation. */
+void passes_begin(uint8_t slot, uint8_t step);
 
-/* Describes the next move in move_*; 0 when the tool is back at park. */
+/* Describes the next move in path_next and path_rate; 0 when the tool is
+   back at park. passes_more: the part goes on behind it, a chain of its own,
+   when path_begin() is called again. */
 uint8_t passes_source(void);
+extern uint8_t passes_more;
 
 /* What the tool is doing now, for the operator: operation 1..operations,
-   pass 1..passes (0 = on the way). */
-extern uint8_t passes_operations;
+   pass 1..passes (0 = on the way; passes 0 = not known: the next operation is
+   being worked out already). */
 uint8_t passes_operation(void);
 uint8_t passes_pass(void);
 uint8_t passes_passes(void);
-
-/* Tool steps of the whole run, an estimate for the progress. */
-extern uint32_t passes_total_steps;
 
 #endif

@@ -24,10 +24,10 @@
 #define CRC16_POLYNOMIAL                    0x1021
 #define CRC16_INITIAL                       0xFFFF
 
-/* units of the part store; a part takes one to five, its slot is the first */
-#define PART_SLOTS                          16
+/* units of the part store; a part takes one to ten, its slot is the first */
+#define PART_SLOTS                          12
 /* bytes of one unit, 64 of them for its header when it is a part's first */
-#define PART_UNIT                           512
+#define PART_UNIT                           256
 /* no slot; in RUN: the selected part */
 #define SLOT_NONE                           255
 /* bytes of a part image */
@@ -43,10 +43,10 @@
 /* steps, largest length or radius in a part image: the chip counts in 16
  * bits */
 #define POSITION_MAX                        32000
-/* 1/256 step/s, slowest feed: 4 step/s */
-#define FEED_MIN                            1024
+/* 1/8 step/s, slowest feed: 4 step/s */
+#define FEED_MIN                            32
 /* feed units of one step/s */
-#define FEED_UNIT                           256
+#define FEED_UNIT                           8
 /* percent, slowest feed override */
 #define OVERRIDE_MIN                        10
 /* percent, fastest feed override */
@@ -65,8 +65,14 @@
 #define CONTOUR_KIND                        15
 /* bit of a contour's kind: roughed in facing direction */
 #define CONTOUR_FACING                      128
+/* steps, largest retract: sums with it stay below 16 bits */
+#define RETRACT_MAX                         8000
+/* steps, most raw material in front of z = 0 */
+#define STOCK_FRONT_MAX                     8000
+/* steps, widest grooving tool */
+#define WIDTH_MAX                           8000
 /* steps, largest radius of an arc */
-#define RADIUS_MAX                          46000L
+#define RADIUS_MAX                          32000
 /* progress of a finished run */
 #define PERMILLE_DONE                       1000
 
@@ -283,6 +289,12 @@
 #define SETTING_SET_RESPONSE_SIZE           1
 #define SETTING_SET_ID_AT                   0
 #define SETTING_SET_VALUE_AT                1
+/* Give the chip another serial number, stored in EEPROM before the answer.
+ * HELLO shows it at once, USB from the next connection on. */
+#define COMMAND_SERIAL_SET                  0x22
+#define SERIAL_SET_REQUEST_SIZE             8
+#define SERIAL_SET_RESPONSE_SIZE            1
+#define SERIAL_SET_SERIAL_AT                0
 
 /* Part image: header, then one record per operation. */
 #define PART_IMAGE_FORMAT                   2
@@ -321,13 +333,13 @@
 /* Cutting data for what follows; kind is the number of spring passes, 0 to
  * 9. */
 #define OPERATION_CUT                       2
-#define OPERATION_CUT_SIZE                  20
+#define OPERATION_CUT_SIZE                  16
 #define OPERATION_CUT_DEPTH_OF_CUT_AT       4
 #define OPERATION_CUT_FINISH_ALLOWANCE_AT   6
 #define OPERATION_CUT_FEED_AT               8
-#define OPERATION_CUT_FINISH_FEED_AT        12
-#define OPERATION_CUT_SPINDLE_AT            16
-#define OPERATION_CUT_PECK_AT               18
+#define OPERATION_CUT_FINISH_FEED_AT        10
+#define OPERATION_CUT_SPINDLE_AT            12
+#define OPERATION_CUT_PECK_AT               14
 
 /* Park and wait for RUN; kind 0 a message, 1 a drill to be used by hand. */
 #define OPERATION_PAUSE                     3
@@ -359,7 +371,8 @@
  * OUTSIDE_TRAVEL, DEPTH_OF_CUT, ALLOWANCE, FEED, SPINDLE, OUTSIDE_STOCK,
  * DIRECTION, EMPTY_CUT, ARC, BACK_EDGE, FRONT_EDGE, BLOCKED. After the last
  * one (operation 0): OPERATION_COUNT. */
-/* format is not 2, or a byte, flag or kind has a value that is not defined */
+/* format is not 2, or a byte, flag or kind has a value that is not defined,
+ * or a width is more than 8000 */
 #define REFUSAL_FORMAT                      1
 /* shorter than its header, longer than 2496 bytes, fewer than 4 bytes left
  * for a record, or a record that is shorter than 4 bytes or reaches behind
@@ -371,13 +384,13 @@
 /* step_x_nm or step_z_nm differs from the setting */
 #define REFUSAL_STEP_SIZE                   4
 /* stock_radius or stock_length is 0 or more than 32000, or stock_front is
- * more than 32000 - stock_length */
+ * more than 8000 */
 #define REFUSAL_STOCK                       5
 /* depth_of_cut is 0 or more than stock_radius */
 #define REFUSAL_DEPTH_OF_CUT                6
-/* feed or finish_feed is below 1024 or above 256 * max_rate */
+/* feed or finish_feed is below 32 or above 8 * max_rate */
 #define REFUSAL_FEED                        7
-/* retract is 0 or more than 32000 */
+/* retract is 0 or more than 8000 */
 #define REFUSAL_RETRACT                     8
 /* operation_count is not 1 to 64, or not the number of PAUSE, CONTOUR and
  * PLUNGE records */
@@ -394,8 +407,8 @@
 #define REFUSAL_OUTSIDE_STOCK               12
 /* whole part: zero_x + stock_radius + retract above 0, or zero_z +
  * stock_front + 2 * retract above 0, and the same with the offset of every
- * tool; operation: zero_x + offset + x below -travel_x, or zero_z + offset
- * + z below -travel_z */
+ * tool, or zero + offset is not -32000 to 0; operation: zero_x + offset + x
+ * below -travel_x, or zero_z + offset + z below -travel_z */
 #define REFUSAL_OUTSIDE_TRAVEL              13
 /* a segment without length; a contour along Z that ends where it starts in
  * z, or nowhere comes below stock_radius; a facing one that ends at or in
@@ -410,9 +423,9 @@
 #define REFUSAL_ORDER                       17
 /* CONTOUR with a tool of a width, or PLUNGE with one without */
 #define REFUSAL_TOOL                        18
-/* the circle through the start misses the end by more than a step, its
- * radius is below 2 or above 46000, or an end lies on the wrong side of its
- * centre (convex: x below it; concave: above it) */
+/* the circle through the start misses the end by more than a step
+ * (motion/arc.h), its radius is below 2 or above 32000, or an end lies on
+ * the wrong side of its centre (convex: x below it; concave: above it) */
 #define REFUSAL_ARC                         19
 /* a segment falls more steeply than back of the tool */
 #define REFUSAL_BACK_EDGE                   20

@@ -44,4 +44,9 @@ uint8_t arc_rest_flags(void);
 /* Entries at least to come from here to the end. */
 uint16_t arc_left(void);
 
+/* Square root of root_of, rounded down, 700 cycles; an arc under way is not
+   disturbed. */
+extern uint32_t root_of;
+uint16_t root_find(void);
+
 #endif

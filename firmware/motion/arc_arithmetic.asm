@@ -15,7 +15,7 @@
         global  _arc_enter, _arc_measure, _arc_exchange, _arc_mirror_p
         global  _arc_mirror_m, _arc_set_up, _arc_finish
         global  do_load, do_store, do_add, absolute, half
-        global  accumulator, value, bit_mask
+        global  accumulator, value, bit_mask, kept, _root_of
         extern  scale
         extern  _run_change_major, _run_change_minor, _run_decision
         extern  _run_curve, _run_sine, _run_sine_step
@@ -44,7 +44,9 @@ _arc_signs      res 1                   ; bit 0 p < 0, 1 m < 0, 2 |p| > |m|,
                                         ; 3 |p| = |m|, 4 goal m > 0
 _arc_missed     res 4
 factor          res 4
+_root_of
 value           res 4
+kept            res 2
 accumulator     res 4
 bit_mask        res 2
 arc_code        code

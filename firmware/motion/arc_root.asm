@@ -4,9 +4,9 @@
         include <p18f4550.inc>
         radix   dec
 
-        global  _arc_find_root, scale
+        global  _arc_find_root, _root_find, scale
         extern  do_load, do_store, do_add, absolute, half
-        extern  accumulator, value, bit_mask
+        extern  accumulator, value, bit_mask, kept
         extern  _arc_p, _arc_m, _arc_root, _arc_shift, _arc_missed
 
 arc_root_code   code
@@ -51,6 +51,16 @@ shift_found:
         call    do_add
         lfsr    0, value
         call    do_store
+        rcall   find_root
+        lfsr    0, _arc_missed
+        call    do_load
+        rcall   scale
+        lfsr    0, _arc_missed
+        call    do_store
+        return
+
+; root = square root of the value, rounded down.
+find_root:
         clrf    _arc_root, B
         clrf    _arc_root + 1, B
         clrf    bit_mask, B
@@ -81,11 +91,18 @@ root_keep:
         rrcf    bit_mask + 1, F, B
         rrcf    bit_mask, F, B
         bnc     root_bit
-        lfsr    0, _arc_missed
-        call    do_load
-        rcall   scale
-        lfsr    0, _arc_missed
-        call    do_store
+        return
+
+; uint16_t root_find(void): the root of _root_of. Leaves the arc as it is.
+_root_find:
+        banksel accumulator
+        movff   _arc_root, kept
+        movff   _arc_root + 1, kept + 1
+        rcall   find_root
+        movff   _arc_root + 1, PRODL
+        movf    _arc_root, W, B
+        movff   kept, _arc_root
+        movff   kept + 1, _arc_root + 1
         return
 
 ; accumulator = accumulator^2 / 2

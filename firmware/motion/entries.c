@@ -19,7 +19,6 @@
 #define RUN_ARC 2
 
 uint16_t entries_made;
-uint32_t entries_steps;
 
 /* Screw less tool at the end of what has been generated. */
 static int16_t planned_slack_x;
@@ -45,7 +44,6 @@ extern volatile uint8_t step_ring[256];
 void entries_begin(void)
 {
     entries_made = 0;
-    entries_steps = 0;
     run_left = 0;
     run_kind = RUN_NONE;
     due_x = 0;
@@ -197,7 +195,6 @@ static void publish(uint8_t batch)
 {
     stream_head = run_head;
     entries_made += batch;
-    entries_steps += batch;
 }
 
 /* Adds due dead steps of the axes that an entry leaves at rest. */
@@ -231,7 +228,6 @@ static void careful_entry(void)
         stream_push(waiting_flags, waiting_stretch);
         if (waiting_flags & STREAM_ADVANCES) {
             entries_made++;
-            entries_steps++;
         }
         return;
     }

@@ -17,10 +17,8 @@
 
 #include <stdint.h>
 
-/* Entries made since entries_begin() that advance the path; the second does
-   not wrap. */
+/* Entries made since entries_begin() that advance the path. */
 extern uint16_t entries_made;
-extern uint32_t entries_steps;
 
 /* At the start of a chain: the screws stand as the step stream tells. */
 void entries_begin(void);

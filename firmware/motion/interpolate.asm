@@ -132,7 +132,7 @@ _interpolate_stretch:
 ; 1/2) / 256)^2) - 1), each on a page of its own. A sine beyond the octant's
 ; reads as that of 45 degrees, one just below 0 as 0.
 
-table_slope     code 0x005E00
+table_slope     code 0x007200
 slope_table
         db      0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0
         db      0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1
@@ -157,7 +157,7 @@ slope_table
         db      95, 96, 96, 97, 98, 98, 99, 100, 100, 101, 102, 103
         db      103, 104, 105, 105
 
-table_sine      code 0x005F00
+table_sine      code 0x007300
 sine_table
         db      0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0
         db      0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1

@@ -73,13 +73,6 @@ void path_cancel(void)
     ended = 1;
 }
 
-uint32_t path_steps_made(void)
-{
-    uint8_t fill = stream_fill();
-
-    return entries_steps > fill ? entries_steps - fill : 0;
-}
-
 void path_set_home(uint8_t axis)
 {
     if (axis == AXIS_X) {
@@ -132,6 +125,10 @@ static uint8_t accept(void)
     }
     if (!path_source()) {
         complete = 1;
+        if (path_head == path_made) { /* nothing at all */
+            path_mark = path_next.mark;
+            ended = 1;
+        }
         return 0;
     }
     path_next.count = 0;
@@ -179,7 +176,7 @@ static uint8_t next_segment(void)
     return 1;
 }
 
-void path_poll(void)
+void path_make(void)
 {
     uint8_t budget = BATCH;
     uint8_t room;
@@ -188,7 +185,6 @@ void path_poll(void)
     if (ended) {
         return;
     }
-    accept();
     if (!started && !complete && after(path_head) != ramp_segment) {
         return; /* look ahead as far as possible before the first step */
     }
@@ -216,5 +212,13 @@ void path_poll(void)
         stream_start();
     } else if (started && !ended && stream_fill() < stream_low) {
         stream_low = stream_fill();
+    }
+}
+
+void path_poll(void)
+{
+    if (!ended) {
+        accept();
+        path_make();
     }
 }

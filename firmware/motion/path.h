@@ -23,7 +23,7 @@
 
 #include <stdint.h>
 
-#define SEGMENTS 18u
+#define SEGMENTS 16u
 
 /* Kinds of segment. */
 #define SEGMENT_LINE 0
@@ -87,14 +87,14 @@ void path_begin(void);
 /* Plans and generates as far as there is room; every main loop turn. */
 void path_poll(void);
 
+/* Generates alone: for a path_source() that computes for long. */
+void path_make(void);
+
 /* True from path_begin() until the last step has been made. */
 uint8_t path_busy(void);
 
 /* Ends the chain at once; the tool position stays exact. */
 void path_cancel(void);
-
-/* Tool steps made since path_begin(), for the progress. */
-uint32_t path_steps_made(void);
 
 /* The tool stands at the switch's release point, the screw last turned in
    the negative direction. */

@@ -20,7 +20,7 @@
         extern  _stream_next
 
 ; struct segment of path.h
-SEGMENTS        equ     18
+SEGMENTS        equ     16
 SEGMENT_SIZE    equ     22
 AT_KIND         equ     12
 AT_MARK         equ     13
@@ -240,8 +240,8 @@ least_speed:
         copy_3  wanted, least
 try_brakes:
         copy_3  _ramp_speed, next
-        compare least, _ramp_speed
-        bc      no_need
+        compare _ramp_start, _ramp_speed
+        bc      no_need                 ; it may change at once
         rcall   too_fast
         bc      slower                  ; towards least
 no_need:

@@ -10,7 +10,7 @@
         radix   dec
 
         global  _flash_address, _flash_row
-        global  _flash_read, _flash_read_u16, _flash_read_i16
+        global  _flash_read, _flash_read_u16, _flash_read_i24
         global  _flash_read_u32, _flash_erase_block, _flash_write_row
 
 flash_data      udata
@@ -61,27 +61,18 @@ _flash_read_u32:
         stop_reading
         return
 
-; Reads 32 bits; PRODH and the last byte must repeat the sign of PRODL.
-_flash_read_i16:
-        rcall   _flash_read_u32
-        movwf   TABLAT, A               ; free again
-        movlw   0
-        btfsc   PRODL, 7, A
-        movlw   0xFF
-        cpfseq  PRODH, A
-        bra     too_large
-        cpfseq  FSR0L, A
-        bra     too_large
+_flash_read_i24:
+        start_reading
+        tblrd*+
         movf    TABLAT, W, A
-        return
-too_large:
-        movlw   0x80                    ; -32768 or 32767, by the sign of
-        btfss   FSR0L, 7, A             ; the last byte
-        movlw   0x7F
-        movwf   PRODL, A
-        movlw   0
-        btfss   FSR0L, 7, A
-        movlw   0xFF
+        tblrd*+
+        movff   TABLAT, PRODL
+        tblrd*+
+        movff   TABLAT, PRODH
+        stop_reading
+        clrf    FSR0L, A
+        btfsc   PRODH, 7, A
+        setf    FSR0L, A
         return
 
 _flash_erase_block:
@@ -135,7 +126,7 @@ point:
         bcf     STATUS, C, A
         btfsc   _flash_address + 1, 7, B
         return
-        movlw   0x60
+        movlw   0x74
         subwf   _flash_address + 1, W, B
         return
         end

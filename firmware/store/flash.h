@@ -5,7 +5,7 @@
  *
  * Erasing and writing stop the processor for about 2 ms each (data sheet
  * D133A), interrupts included: never while moving. The caller sees to it
- * that addresses lie in the part store (0x6000..0x7FFF); others are ignored.
+ * that addresses lie in the part store (0x7400..0x7FFF); others are ignored.
  */
 #ifndef FLASH_H
 #define FLASH_H
@@ -14,7 +14,7 @@
 
 #define FLASH_BLOCK 64u /* erased together */
 #define FLASH_ROW 32u   /* written together */
-#define FLASH_STORE_BEGIN 0x6000u
+#define FLASH_STORE_BEGIN 0x7400u
 #define FLASH_STORE_END 0x8000u
 
 /* Address for the next call; flash_read() advances it by one. */
@@ -24,11 +24,10 @@ extern volatile uint16_t flash_address;
 extern volatile uint8_t flash_row[FLASH_ROW];
 
 /* Return the number at flash_address, little endian, and step on: 15 to 40
-   cycles with the call. flash_read_i16() reads a 32-bit number; one that does
-   not fit 16 bits comes as -32768 or 32767. */
+   cycles with the call. */
 uint8_t flash_read(void);
 uint16_t flash_read_u16(void);
-int16_t flash_read_i16(void);
+int32_t flash_read_i24(void);
 uint32_t flash_read_u32(void);
 
 /* Erases the 64 bytes that flash_address lies in. */

@@ -7,7 +7,6 @@
 #include "store/eeprom.h"  /* selected part */
 #include "store/flash.h"   /* read, erase, write */
 
-#define SLOT_SIZE 1024u
 #define IMAGE_AT FLASH_BLOCK
 #define MAGIC 0x4E54u
 
@@ -34,7 +33,7 @@ static uint8_t uploading;
 
 static uint16_t slot_base(uint8_t slot)
 {
-    return FLASH_STORE_BEGIN + SLOT_SIZE * slot;
+    return FLASH_STORE_BEGIN + PART_UNIT * (uint16_t)slot;
 }
 
 /* CRC of a stretch of flash. */
@@ -48,6 +47,12 @@ static uint16_t flash_crc(uint16_t address, uint16_t length)
         length--;
     }
     return crc;
+}
+
+/* Units of a part with so many bytes of image. */
+static uint8_t units(uint16_t length)
+{
+    return (uint8_t)((length + (IMAGE_AT + PART_UNIT - 1)) / PART_UNIT);
 }
 
 /* Reads the header of a slot; true when it is whole. */
@@ -124,6 +129,30 @@ uint8_t parts_select(uint8_t slot)
     return ERROR_OK;
 }
 
+uint8_t parts_select_next(void)
+{
+    uint8_t selected = parts_selected();
+    uint8_t number = 0;
+    uint8_t slot;
+
+    if (selected == SLOT_NONE) {
+        return 0;
+    }
+    for (slot = 0; slot < PART_SLOTS; slot++) {
+        if (parts_present(slot)) {
+            number++;
+            if (slot > selected) {
+                parts_select(slot);
+                return number;
+            }
+        }
+    }
+    for (slot = 0; !parts_present(slot); slot++) {
+    }
+    parts_select(slot);
+    return 1;
+}
+
 /* Reads the name of the image in a slot into parts_name. */
 void parts_read_name(uint8_t slot)
 {
@@ -183,19 +212,25 @@ void parts_init(void)
     }
 }
 
-static uint8_t free_slots(void)
+/* First of enough free units in a row, SLOT_NONE if there are none. */
+static uint8_t find_room(uint8_t wanted)
 {
-    uint8_t count = 0;
-    uint8_t slot = PART_SLOTS;
+    uint8_t slot = 0;
+    uint8_t found = 0;
 
-    while (slot != 0) {
-        slot--;
-        if (!parts_present(slot)) {
-            parts_upload_slot = slot; /* the first one in the end */
-            count++;
+    while (slot < PART_SLOTS) {
+        if (parts_present(slot)) {
+            slot += units(parts_length);
+            found = 0;
+        } else {
+            slot++;
+            found++;
+            if (found == wanted) {
+                return slot - found;
+            }
         }
     }
-    return count;
+    return SLOT_NONE;
 }
 
 uint8_t parts_upload_begin(uint16_t length, uint16_t crc)
@@ -204,7 +239,8 @@ uint8_t parts_upload_begin(uint16_t length, uint16_t crc)
     if (length < PART_IMAGE_HEADER_SIZE || length > PART_IMAGE_MAX) {
         return ERROR_OUT_OF_RANGE;
     }
-    if (free_slots() == 0) {
+    parts_upload_slot = find_room(units(length));
+    if (parts_upload_slot == SLOT_NONE) {
         return ERROR_STORE_FULL;
     }
     erase_header(parts_upload_slot);
@@ -289,10 +325,6 @@ uint8_t parts_upload_accept(void)
     uint8_t older = namesake(slot);
 
     uploading = 0;
-    if (older == SLOT_NONE && free_slots() == 1) {
-        return ERROR_STORE_FULL;
-    }
-    parts_upload_slot = slot;
     write_header(slot);
     if (!parts_intact(slot)) {
         erase_header(slot);

@@ -1,19 +1,20 @@
 /*
- * Part store: up to eight parts in program flash, each in a slot of its own.
+ * Part store: named parts in program flash, in units of 256 bytes.
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- * Slot: 64 bytes of header (magic, generation, length, CRC of the image, CRC
- * of the header; written last), then the image as it came over the link, at
- * most PART_IMAGE_MAX bytes. A part is there when its header is whole, so an
- * upload that is cut off anywhere leaves nothing behind and every other part
- * as it was. A part with the name of an older one replaces it: the older
- * header goes when the new one stands; should power fail in between, the
- * next start finds both and drops the older.
+ * A part takes one unit or more in a row; its slot is the number of the first.
+ * That one begins with 64 bytes of header (magic, generation, length, CRC of
+ * the image, CRC of the header; written last); the image follows as it came
+ * over the link, at most PART_IMAGE_MAX bytes. A part is there when its header
+ * is whole, so an upload that is cut off anywhere leaves nothing behind and
+ * every other part as it was. A part with the name of an older one replaces
+ * it: the older header goes when the new one stands; should power fail in
+ * between, the next start finds both and drops the older.
  *
- * The last free slot takes only such a replacement, so that replacing always
- * stays possible. Main loop only, and never while moving: the flash stops
- * the processor. Errors are ERROR_... of link/protocol.h.
+ * An upload goes to the first free units that are enough of them in a row.
+ * Main loop only, and never while moving: the flash stops the processor.
+ * Errors are ERROR_... of link/protocol.h.
  */
 #ifndef PARTS_H
 #define PARTS_H
@@ -29,6 +30,10 @@ uint8_t parts_selected(void);
 
 /* Chooses it; remembered without power. */
 uint8_t parts_select(uint8_t slot);
+
+/* Chooses the part behind the selected one, the first behind the last.
+   Returns its number in the order of the slots, from 1; 0 without a part. */
+uint8_t parts_select_next(void);
 
 /* True when the slot holds a part; its header is then in the variables
    below, until the next call into this room. */

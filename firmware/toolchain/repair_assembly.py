@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Repair what SDCC's PIC16 port is known to write wrong, refuse what it must not.
+"""Repair what SDCC's PIC16 port is known to write wrong or at length, refuse what it must not.
 
 - A bit test or change on a byte inside a variable, `BTFSC (_rate + 1), 7`, comes
   without the flag that says "banked", although the bank has been selected just
   before; the assembler then silently takes the access bank. The flag is added.
+- A test of a sign bit goes through the carry, in four instructions: two do.
 - An initialised variable would need a copying start-up, which this firmware does
   not have. It is refused.
 
@@ -17,6 +18,9 @@ from pathlib import Path
 
 BIT_WITHOUT_BANK = re.compile(
     r"^(\s*(?:BTFSC|BTFSS|BTG|BSF|BCF)\s+\(_\w+\s*\+\s*\d+\),\s*\d+)\s*$", re.IGNORECASE
+)
+SIGN_TEST = re.compile(
+    r"^\tBSF\tSTATUS, 0\n\tBTFSS\t(\S.*), 7\n\tBCF\tSTATUS, 0\n\t(BNC|BC)\t(\S+)$", re.MULTILINE
 )
 INITIALISED = re.compile(r"^\w*\s+idata\b", re.IGNORECASE)
 
@@ -31,7 +35,13 @@ def repair(source: str) -> str:
         if INITIALISED.match(line):
             raise ValueError(f"{number}: initialised variable; set it in the room's init function")
         lines.append(BIT_WITHOUT_BANK.sub(r"\1, B", line))
-    return "\n".join(lines) + "\n"
+    return SIGN_TEST.sub(_test_bit, "\n".join(lines) + "\n")
+
+
+def _test_bit(match: re.Match[str]) -> str:
+    """Jump by the bit itself."""
+    skip = "BTFSS" if match[2] == "BNC" else "BTFSC"
+    return f"\t{skip}\t{match[1]}, 7\n\tBRA\t{match[3]}"
 
 
 def main() -> None:

@@ -10,9 +10,10 @@ import pytest
 from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import on_a_new_chip
-from tornillo.protocol import State
+from tornillo.protocol import PART_SLOTS, PART_UNIT, State
 
 SIZE_FILE = Path(__file__).parents[2] / "build" / "firmware" / "size.json"
+STORE_BEGIN, FLASH_SIZE = 0x7400, 0x8000
 STACK_FIRST, STACK_LAST = 0x700, 0x7FF
 FSR1L, FSR1H = 0xFE1, 0xFE2
 
@@ -24,14 +25,14 @@ def size() -> dict[str, int]:
     return found
 
 
-def test_the_budgets_of_the_first_release_hold(size: dict[str, int]) -> None:
-    assert size["flash_bytes"] <= 32768 * 75 // 100
+def test_the_budgets_hold(size: dict[str, int]) -> None:
     assert size["ram_static_bytes"] + size["sw_stack_worst_bytes"] <= 2048 * 85 // 100
     assert size["hw_stack_worst_levels"] <= 20
 
 
 def test_the_program_ends_before_the_part_store(size: dict[str, int]) -> None:
-    assert size["flash_bytes"] <= 0x6000
+    assert size["flash_bytes"] <= STORE_BEGIN
+    assert STORE_BEGIN + PART_SLOTS * PART_UNIT == FLASH_SIZE
 
 
 def software_stack_used(bench: Bench) -> int:

@@ -12,7 +12,7 @@ from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import branch, on_a_new_chip
 from simulated.standing import COILS, REST_CYCLES
-from tornillo.protocol import Axis, CylinderRecord, FaceRecord, SettingId, State
+from tornillo.protocol import Axis, SettingId, State
 from virtual_lathe.chip import CYCLES_PER_SECOND
 from virtual_lathe.machine import AxisName
 from virtual_lathe.part import Cylinder, Face, Nominal, WantedPart
@@ -107,7 +107,7 @@ def test_a_part_is_cut_exactly_in_half_steps() -> None:
         little_pin.FRONT // 2,
         (Face(0, 0, Nominal(0.0, 0)), Cylinder(0, -20, 18, Nominal(18, 20))),
     )
-    operations = (FaceRecord(0, 0), CylinderRecord(0, -40, 36))
+    operations = (little_pin.FACE, little_pin.cylinder(0, -40, 36))
     bench.host.upload(little_pin.image("half", operations))
     bench.home()
     status = bench.status()
@@ -261,7 +261,7 @@ def test_the_current_never_goes_while_the_lathe_homes_cuts_or_holds() -> None:
         assert current(bench)[bench.chip.variable("homing_axis")]
         bench.run(0.001)
     assert bench.homed
-    bench.host.upload(little_pin.image("slow", feed=20 * 256, finish_feed=20 * 256))
+    bench.host.upload(little_pin.image("slow", feed=20 * 8, finish_feed=20 * 8))
     bench.host.run()
     bench.run(0.01)
     bench.chip.log_pins(*COILS)

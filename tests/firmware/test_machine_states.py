@@ -23,7 +23,7 @@ OK, BUSY, NOT_HOMED, IN_ALARM, NOT_RUNNING = (
     ErrorCode.ALARM,
     ErrorCode.NOT_RUNNING,
 )
-IDLE, HOMING, RUNNING, HOLD, ALARM = State
+IDLE, HOMING, RUNNING, HOLD, ALARM, PAUSE = State
 NONE = Alarm.NONE
 
 # event -> what it does in the state; "button" events have no error code, so OK.
@@ -92,6 +92,19 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, ALARM, Alarm.LIMIT),
     },
+    "pause": {
+        "button run": (OK, RUNNING, NONE),
+        "button hold": (OK, PAUSE, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (BUSY, PAUSE, NONE),
+        "run": (BUSY, PAUSE, NONE),
+        "hold": (NOT_RUNNING, PAUSE, NONE),
+        "resume": (OK, RUNNING, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, PAUSE, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
     "alarm": {
         "button run": (OK, ALARM, Alarm.LIMIT),
         "button hold": (OK, ALARM, Alarm.LIMIT),
@@ -118,6 +131,10 @@ def lathe_in(state: str) -> Bench:
         bench.run(0.05)
         return bench
     bench = little_pin.homed_lathe_with_pin()
+    if state == "pause":
+        bench.host.upload(little_pin.image("pausing", (little_pin.pause(), *little_pin.OPERATIONS)))
+        bench.host.run()
+        bench.wait_for(PAUSE)
     if state in ("running", "hold"):
         bench.host.run()
         bench.run(0.2)
@@ -224,8 +241,8 @@ def test_nothing_is_stored_while_the_machine_moves() -> None:
     attempts: list[Callable[[], object]] = [
         lambda: host.upload(image),
         lambda: link.request(Command.UPLOAD_COMMIT),
-        lambda: host.delete(7),
-        lambda: host.select(7),
+        lambda: host.delete(0),
+        lambda: host.select(0),
         lambda: bench.set(rapid_rate_x=500),
         lambda: host.zero(Axis.X, 0),
     ]

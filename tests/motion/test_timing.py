@@ -15,6 +15,7 @@ from tornillo.image import SegmentKind
 from tornillo.machine import Machine
 from tornillo.moves import Move
 from tornillo.planning import plan_part
+from tornillo.protocol import FEED_UNIT
 from tornillo.timing import move_times
 
 from motion import reference
@@ -44,7 +45,7 @@ def driven(drives: Drives, rig: Rig | None = None) -> Rig:
 
 def segment(move: Move, drives: Drives) -> reference.Segment:
     """A move as the rig gives it to the chip."""
-    rate = move.feed / 256
+    rate = move.feed / FEED_UNIT
     if move.rapid:
         rate = drives.rapid_z if move.dz else drives.rapid_x
     if move.kind is SegmentKind.LINE:
@@ -93,7 +94,7 @@ def test_passes_take_as_long_as_estimated() -> None:
     for drives in (USUAL, FAST):
         rig = driven(drives, rig)
         for seed, feed in enumerate((140, 420, 950)):
-            assert compare(rig, strokes(random.Random(seed), feed * 256), drives) <= BOUND / 3
+            assert compare(rig, strokes(random.Random(seed), feed * FEED_UNIT), drives) <= BOUND / 3
 
 
 @on_a_new_chip
@@ -101,7 +102,7 @@ def test_dead_steps_take_as_long_as_estimated() -> None:
     drives = dataclasses.replace(USUAL, dead_x=40, dead_z=25)
     rig = driven(drives)
     # The tool is left with both screws turned in the positive direction: once per chip.
-    assert compare(rig, strokes(random.Random(7), 420 * 256), drives) <= BOUND
+    assert compare(rig, strokes(random.Random(7), 420 * FEED_UNIT), drives) <= BOUND
 
 
 @on_a_new_chip
@@ -110,7 +111,7 @@ def test_a_contour_of_many_short_pieces_is_estimated_with_the_look_ahead() -> No
     at = (0, 0)
     for number in range(120):
         end = at[0] - 12, at[1] + (2 if number % 2 else 1)
-        pieces.append(Move(at, end, 3_000 * 256))
+        pieces.append(Move(at, end, 3_000 * FEED_UNIT))
         at = end
     assert compare(driven(FAST), pieces, FAST) <= BOUND
 

@@ -5,8 +5,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from tornillo.image import Operation, PartImage
-from tornillo.protocol import CylinderRecord, FaceRecord, ImageHeader
+from tornillo.image import PartImage, Record, Segment, SegmentKind, pack_segments
+from tornillo.protocol import (
+    CONTOUR_FACING,
+    SLOPE_ANY,
+    ContourRecord,
+    CutRecord,
+    ImageHeader,
+    PauseRecord,
+    ToolRecord,
+)
 from virtual_lathe.part import Cylinder, Face, Nominal, WantedPart
 
 from simulated.bench import Bench
@@ -14,7 +22,7 @@ from simulated.bench import Bench
 STEP_MM = 7112e-6
 RADIUS, LENGTH, FRONT = 60, 100, 6
 ZERO_X, ZERO_Z = -100, -60
-OPERATIONS: tuple[Operation, ...] = (FaceRecord(0, 0), CylinderRecord(0, -40, 35))
+FACE_KIND, CYLINDER_KIND, PROFILE_KIND = CONTOUR_FACING, 1, 4
 #: Options of the virtual lathe that belong to the part.
 OPTIONS: dict[str, Any] = {
     "stock_diameter_mm": 2 * RADIUS * STEP_MM,
@@ -24,7 +32,7 @@ OPTIONS: dict[str, Any] = {
     "part_zero_z": ZERO_Z,
 }
 HEADER = ImageHeader(
-    format=1,
+    format=2,
     operation_count=2,
     flags=0,
     reserved=0,
@@ -34,41 +42,99 @@ HEADER = ImageHeader(
     stock_radius=RADIUS,
     stock_length=LENGTH,
     stock_front=FRONT,
+    retract=5,
+)
+#: Right-hand: follows square shoulders, and falls of 30 degrees.
+TOOL = ToolRecord(
+    kind=0,
+    name=b"right-hand".ljust(12, b"\0"),
+    nose=0,
+    below=0,
+    width=0,
+    back=148,
+    front=SLOPE_ANY,
+    offset_x=0,
+    offset_z=0,
+)
+CUT = CutRecord(
+    kind=0,
     depth_of_cut=10,
     finish_allowance=2,
-    feed=400 * 256,
-    finish_feed=200 * 256,
-    retract=5,
-    reserved_end=0,
+    feed=400 * 8,
+    finish_feed=200 * 8,
+    spindle=0,
+    peck=0,
 )
+
+
+def line(dz: int, dx: int) -> Segment:
+    """Return a straight segment."""
+    return Segment(SegmentKind.LINE, dz, dx)
+
+
+def contour(z: int, x: int, *segments: Segment, kind: int = PROFILE_KIND) -> ContourRecord:
+    """Return the record of a contour that starts at a place."""
+    return ContourRecord(kind, z, x, pack_segments(segments))
+
+
+def face(z: int, x_inner: int, radius: int = RADIUS) -> ContourRecord:
+    """Return the record of a face, from a radius out to that of the stock."""
+    return contour(z, x_inner, line(0, radius - x_inner), kind=FACE_KIND)
+
+
+def cylinder(z_start: int, z_end: int, x: int) -> ContourRecord:
+    """Return the record of a cylinder."""
+    return contour(z_start, x, line(z_end - z_start, 0), kind=CYLINDER_KIND)
+
+
+def pause(message: str = "") -> PauseRecord:
+    """Return the record of a pause."""
+    return PauseRecord(0, message.encode())
+
+
+FACE, CYLINDER = OPERATIONS = (face(0, 0), cylinder(0, -40, 35))
 
 
 def image(
     name: str = "little-pin",
-    operations: tuple[Operation, ...] = OPERATIONS,
-    **header: Any,
+    operations: tuple[Record, ...] = OPERATIONS,
+    **changes: Any,
 ) -> bytes:
-    """Return the image of a part for the little stock; ``header`` changes fields of the header."""
-    changed = HEADER._replace(
-        name=name.encode().ljust(16, b"\0"), operation_count=len(operations)
-    )._replace(**header)
-    return PartImage(changed, operations).pack()
+    """Return the image of a part for the little stock.
+
+    ``changes`` are fields of the header, of the tool or of its cutting data; those of the tool
+    begin with ``tool_``, as in ``tool_width``.
+    """
+    count = sum(not isinstance(record, ToolRecord | CutRecord) for record in operations)
+    header = HEADER._replace(name=name.encode().ljust(16, b"\0"), operation_count=count)
+    header = header._replace(**{k: v for k, v in changes.items() if k in header._fields})
+    cut = CUT._replace(**{k: v for k, v in changes.items() if k in CUT._fields and k != "kind"})
+    tool = TOOL._replace(
+        **{k.removeprefix("tool_"): v for k, v in changes.items() if k.startswith("tool_")}
+    )
+    known = {*header._fields, *cut._fields, *(f"tool_{field}" for field in tool._fields)}
+    assert set(changes) <= known
+    return PartImage(header, (tool, cut, *operations)).pack()
 
 
-def wanted(operations: tuple[Operation, ...] = OPERATIONS, front: int = FRONT) -> WantedPart:
-    """Return what the virtual lathe shall compare the workpiece with."""
+def wanted(operations: tuple[ContourRecord, ...] = OPERATIONS, front: int = FRONT) -> WantedPart:
+    """Return what the virtual lathe shall compare the workpiece with: faces and cylinders."""
     shapes = tuple(
-        Face(record.z, record.x_inner, Nominal(0.0, record.z))
-        if isinstance(record, FaceRecord)
-        else Cylinder(
-            record.z_start,
-            record.z_end,
-            record.x,
-            Nominal(record.x, record.z_start - record.z_end),
-        )
+        Face(record.z, record.x, Nominal(record.x, record.z))
+        if record.kind & CONTOUR_FACING
+        else Cylinder(record.z, end_of(record), record.x, _drawn(record))
         for record in operations
     )
     return WantedPart(RADIUS, LENGTH, front, shapes)
+
+
+def _drawn(record: ContourRecord) -> Nominal:
+    return Nominal(record.x, record.z - end_of(record))
+
+
+def end_of(record: ContourRecord) -> int:
+    """Return the z at which a contour of one line ends."""
+    return record.z + int.from_bytes(record.segments[3:5], "little", signed=True)
 
 
 def lathe_with_pin(**options: Any) -> Bench:

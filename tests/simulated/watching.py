@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 
 from tornillo.protocol import Axis
 from virtual_lathe.chip import CYCLES_PER_SECOND
@@ -69,9 +69,11 @@ class Watch:
         bench.chip.watch_writes(slack, slack + 3)
 
     def _note(self, moves: Iterable[Move]) -> None:
-        for move in moves:
+        every = list(moves)
+        for move, then in zip_longest(every, every[1:]):
             before = self._work.steps_cutting
-            self._cut([move])
+            if then is None or then.cycle - move.cycle >= SAME_STEP:
+                self._cut([move])
             axis = "X" if move.x != self._last[0] else "Z"
             direction = 1 if (move.x, move.z) > self._last else -1
             self._last = move.x, move.z
@@ -87,13 +89,23 @@ class Watch:
         return all(self._work.radius_at(place) < x for place in front)
 
     def approach(self) -> list[Movement]:
-        """Return the movements up to the last step of both slides at once."""
+        """Return the movements of the first way on which both slides step at once.
+
+        Behind the last step of both it ends with those of the slide that has the longer way.
+        """
         both = [
             number
             for number, (first, then) in enumerate(pairwise(self.movements))
             if then.cycle - first.cycle < SAME_STEP
         ]
-        return self.movements[: both[-1] + 2] if both else []
+        if not both:
+            return []
+        end = both[-1] + 2
+        axes = [movement.axis for movement in self.movements[:end]]
+        longer = max(axes, key=axes.count)
+        while end < len(self.movements) and self.movements[end].axis == longer:
+            end += 1
+        return self.movements[:end]
 
     def strokes(self) -> list[Stroke]:
         """Return what follows the approach as strokes of one slide each."""

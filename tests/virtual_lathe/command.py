@@ -4,13 +4,15 @@
 It prints the port on the first line of standard output, then a line of state every few seconds,
 and writes the report when it ends. Lines typed on standard input press buttons while it runs:
 ``press run``, ``press hold``, ``press stop``, ``press estop``, ``press release``, ``plug``,
-``unplug``, ``state``, ``quit``.
+``unplug``, ``state``, ``quit``. ``tool NAME`` puts another tool of the part into the holder, ``tool
+next`` the one that the part needs next.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import select
 import signal
@@ -20,12 +22,13 @@ from functools import partial
 from pathlib import Path
 from types import FrameType
 
-from .chip import EEPROM_BYTES, FLASH_BYTES, NonVolatile
+from .chip import CYCLES_PER_SECOND, EEPROM_BYTES, FLASH_BYTES, NonVolatile
 from .lathe import BUTTONS, DEFAULT_FIRMWARE, Options, VirtualLathe
 from .machine import AxisName
 from .motor import PULL_IN
 from .terminal import Terminal
 from .usb_host import UsbError
+from .usbip import BUS_ID, Exporter
 
 ACTIONS = (*BUTTONS, "estop", "release", "plug", "unplug")
 SLICE_S = 0.005
@@ -42,12 +45,17 @@ def _timed(text: str) -> tuple[str, float]:
     return name, float(seconds)
 
 
+def _listen_address(text: str) -> tuple[str, int]:
+    name, _, port = text.rpartition(":")
+    if not name or not port.isdecimal() or int(port) > 0xFFFF:
+        raise argparse.ArgumentTypeError(f"{text!r}: write ADDRESS:PORT, like 127.0.0.1:3240")
+    return name, int(port)
+
+
 def _nose_radius(text: str) -> float:
-    if float(text) != 0.0:
-        raise argparse.ArgumentTypeError(
-            "the tool is modelled as a point so far: only a nose radius of 0 is possible"
-        )
-    return 0.0
+    if not 0 <= float(text) < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r}: a nose radius is 0 or more")
+    return float(text)
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -59,7 +67,8 @@ def build_parser() -> argparse.ArgumentParser:
     add("--stock-diameter", type=float, metavar="MM", help="default: of the part, else 25.4")
     add("--stock-length", type=float, metavar="MM", help="part zero to chuck; else 50.8")
     add("--stock-allowance", type=float, metavar="MM", help="raw metal beyond z = 0")
-    add("--nose-radius", type=_nose_radius, default=0.0, metavar="MM")
+    add("--nose-radius", type=_nose_radius, metavar="MM", help="default: of the part's tools")
+    add("--tool", default="", metavar="NAME", help="in the holder at first; default: as needed")
     for axis in "xz":
         add(f"--backlash-{axis}", type=int, default=0, metavar="STEPS")
         add(f"--switch-travel-{axis}", type=int, default=0, metavar="STEPS")
@@ -77,6 +86,13 @@ def build_parser() -> argparse.ArgumentParser:
     add("--plug", type=float, action="append", default=[], metavar="T")
     add("--no-usb", action="store_true", help="the cable is never put in")
     add("--port-link", type=Path, metavar="PATH")
+    add(
+        "--usbip",
+        type=_listen_address,
+        metavar="ADDRESS:PORT",
+        help="export the device over USB/IP in place of a port; attach it with "
+        f"`usbip attach -r ADDRESS -b {BUS_ID}`",
+    )
     add("--vcd", type=Path, metavar="FILE", help="trace of all pins for GTKWave")
     add("--report", type=Path, metavar="FILE")
     add("--eeprom-file", type=Path, metavar="FILE", help="keeps flash and EEPROM between runs")
@@ -93,6 +109,8 @@ def options_from(arguments: argparse.Namespace) -> Options:
         stock_diameter_mm=arguments.stock_diameter,
         stock_length_mm=arguments.stock_length,
         stock_allowance_mm=arguments.stock_allowance,
+        nose_radius_mm=arguments.nose_radius,
+        tool=arguments.tool,
         backlash_x=arguments.backlash_x,
         backlash_z=arguments.backlash_z,
         switch_travel_x=arguments.switch_travel_x,
@@ -130,6 +148,11 @@ class Session:
         if arguments.vcd:
             self.lathe.chip.open_vcd(arguments.vcd)
         self.terminal = Terminal(self.lathe.host, arguments.port_link)
+        self.exporter = (
+            Exporter(self.lathe.host, arguments.usbip, self.lathe.run_to)
+            if arguments.usbip
+            else None
+        )
         self.stopped = False
         self.enumerate_wanted = False
         self._stdin_open = not sys.stdin.closed
@@ -165,18 +188,16 @@ class Session:
             f"t={self.lathe.seconds:.1f}s X={x.slide:g} Z={z.slide:g} "
             f"steps={x.steps}+{z.steps} lost={x.lost_steps}+{z.lost_steps} "
             f"cut={self.lathe.workpiece.steps_cutting} port={usb} "
-            f"led={self.lathe.chip.level('RC0')}"
+            f"led={self.lathe.chip.level('RC0')} tool={self.lathe.workpiece.tool.name}"
         )
 
     def run(self) -> None:
         """Run until the time is up or somebody ends it."""
-        print(f"port: {self.arguments.port_link or self.terminal.name}", flush=True)
+        print(self._port_line(), flush=True)
         wall_start, next_state = time.monotonic(), time.monotonic() + STATE_EVERY_S
         limit = self.arguments.seconds
         while not self.stopped and (limit is None or self.lathe.seconds < limit):
-            self._connect()
-            self.lathe.run(SLICE_S)
-            self.terminal.exchange()
+            self._let_time_pass()
             self._listen()
             if time.monotonic() >= next_state:
                 next_state += STATE_EVERY_S
@@ -185,6 +206,20 @@ class Session:
                 ahead = self.lathe.seconds - (time.monotonic() - wall_start)
                 if ahead > 0:
                     time.sleep(ahead)
+
+    def _port_line(self) -> str:
+        if self.exporter is not None and self.arguments.usbip is not None:
+            return f"usbip: {self.arguments.usbip[0]}:{self.exporter.port} {BUS_ID}"
+        return f"port: {self.arguments.port_link or self.terminal.name}"
+
+    def _let_time_pass(self) -> None:
+        if self.exporter is not None:
+            chip = self.lathe.chip
+            self.exporter.run(chip.cycle + round(SLICE_S * CYCLES_PER_SECOND))
+            return
+        self._connect()
+        self.lathe.run(SLICE_S)
+        self.terminal.exchange()
 
     def _connect(self) -> None:
         host = self.lathe.host
@@ -217,13 +252,23 @@ class Session:
             print(self.state_line(), flush=True)
         elif words and words[-1] in ACTIONS:
             self.act(words[-1])
+        elif len(words) == 2 and words[0] == "tool":
+            self._change_tool(words[1])
         elif words:
             print(f"not understood: {' '.join(words)}", flush=True)
+
+    def _change_tool(self, name: str) -> None:
+        try:
+            print(f"tool: {self.lathe.change_tool('' if name == 'next' else name)}", flush=True)
+        except ValueError as error:
+            print(error, flush=True)
 
     def finish(self) -> None:
         """Write the report and what must survive."""
         self.lathe.chip.close_vcd()
         self.terminal.close()
+        if self.exporter is not None:
+            self.exporter.close()
         if self.arguments.report:
             text = json.dumps(self.lathe.report(), indent=1)
             self.arguments.report.write_text(text + "\n", encoding="utf-8")

@@ -6,18 +6,20 @@ from __future__ import annotations
 import random
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from .chip import CYCLES_PER_SECOND, Chip, Drive, InterruptCost, NonVolatile, Stop
 from .configuration import wrong_words
-from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine
+from .dimensions import Ruler
+from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine, Move
 from .motor import PULL_IN, PULL_OUT
 from .part import WantedPart, read_part
 from .serial_port import SerialPort
+from .toolbox import Toolbox
 from .usb_host import UsbHost
-from .workpiece import Stock, Workpiece
+from .workpiece import SAME_STEP_CYCLES, Stock, Workpiece
 
 BUTTONS = {"run": "RD4", "hold": "RD5", "stop": "RD6"}
 ESTOP_PIN = "RD7"
@@ -37,6 +39,8 @@ class Options:
     ``start_x`` and ``start_z`` are the slides' places when power comes; ``seed`` decides how much
     of the backlash is taken up then. ``cut_rate_limit`` is the fastest feed in steps/s that is
     not a crash. ``isr_limit`` is the longest high-priority interrupt allowed, in cycles.
+    ``nose_radius_mm`` is that of every turning tool, else the part file says it; ``tool`` is the
+    one in the holder at first, else the one the part needs first.
     ``dry_symbol`` names a variable of the firmware and ``dry_mask`` its bits that are set when the
     step stream has run dry; an empty name checks nothing.
     """
@@ -46,6 +50,8 @@ class Options:
     stock_diameter_mm: float | None = None
     stock_length_mm: float | None = None
     stock_allowance_mm: float | None = None
+    nose_radius_mm: float | None = None
+    tool: str = ""
     backlash_x: int = 0
     backlash_z: int = 0
     switch_travel_x: int = 0
@@ -93,12 +99,18 @@ class VirtualLathe:
         self.wanted: WantedPart | None = (
             read_part(self.options.part) if self.options.part is not None else None
         )
+        nose = self.options.nose_radius_mm
+        self.toolbox = Toolbox(self.wanted, None if nose is None else nose * 1e6 / STEP_NM)
+        if self.wanted is not None and nose is not None:
+            self.wanted = replace(self.wanted, tools=self.toolbox.tools)
         self.workpiece = Workpiece(
             self._stock(),
             self.options.part_zero_x,
             self.options.part_zero_z,
             self.options.cut_rate_limit,
+            self.toolbox.named(self.options.tool) if self.options.tool else self.toolbox.first,
         )
+        self._held: list[Move] = []
         self._faults: list[Fault] = []
         self._furthest: dict[AxisName, tuple[float, float]] = {}
         self._timed: list[tuple[int, Callable[[], None]]] = []
@@ -188,7 +200,11 @@ class VirtualLathe:
             self._timed.pop(0)[1]()
 
     def _collect(self) -> None:
-        moves = self.machine.take_moves()
+        moves = self._held + self.machine.take_moves()
+        # What both slides do in one step must not be torn apart.
+        settled = self.chip.cycle - SAME_STEP_CYCLES
+        self._held = [move for move in moves if move.cycle > settled]
+        moves = moves[: len(moves) - len(self._held)]
         self.workpiece.cut(moves)
         places = {AxisName.X: [m.x for m in moves], AxisName.Z: [m.z for m in moves]}
         for name, values in places.items():
@@ -234,6 +250,19 @@ class VirtualLathe:
     def unplug(self) -> None:
         """Pull the USB cable."""
         self.host.unplug()
+
+    def change_tool(self, name: str = "") -> str:
+        """Put a tool of the part into the holder, or the next one it needs; return its name.
+
+        The slides should stand clear of the work, as they do when the machine waits for it.
+
+        Raises:
+            ValueError: no such tool.
+        """
+        tool = self.toolbox.named(name) if name else self.toolbox.after()
+        self._collect()
+        self.workpiece.change_tool(tool)
+        return tool.name
 
     # -- judgement --------------------------------------------------------------------------------
 
@@ -302,6 +331,8 @@ class VirtualLathe:
     def report(self) -> dict[str, Any]:
         """Return the report as the contract wants it, for JSON."""
         self._collect()
+        self.workpiece.cut(self._held)
+        self._held = []
         work = self.workpiece
         lost = {name: self.lost_steps(name) for name in AxisName}
         stops = [f for f in self._faults if f.kind == FaultKind.END_STOP]
@@ -317,6 +348,7 @@ class VirtualLathe:
             )
         cost = self.interrupt_cost()
         wanted = self.wanted
+        ruler = Ruler(work.surface(wanted), wanted, STEP_NM, STEP_NM) if wanted else None
         return {
             "virtual_seconds": self.seconds,
             "wall_seconds": time.monotonic() - self._wall_start,
@@ -326,8 +358,13 @@ class VirtualLathe:
             "lost_steps_z": lost[AxisName.Z],
             "crashes": crashes,
             "gouge_max_steps": work.gouge_max_steps(wanted) if wanted else None,
-            "profile": work.profile(STEP_NM, STEP_NM),
-            "dimensions": work.dimensions(wanted, STEP_NM, STEP_NM) if wanted else [],
+            "left_max_steps": work.left_max_steps(wanted) if wanted else None,
+            "profile": work.profile(STEP_NM, STEP_NM, wanted),
+            "dimensions": ruler.dimensions() if ruler else [],
+            "angles": ruler.angles() if ruler else [],
+            "circles": ruler.circles() if ruler else [],
+            "tool": work.tool.name,
+            "nose_radius_mm": round(work.tool.nose * STEP_NM / 1e6, 6),
             "steps_cutting": work.steps_cutting,
             "setup": self._setup_report(),
             "slide_x": self.machine.axis(AxisName.X).slide,

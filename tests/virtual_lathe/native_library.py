@@ -123,7 +123,26 @@ class FaultC(Structure):
     _fields_ = [("cycle", c_uint64), ("axis", c_int32), ("kind", c_int32), ("value", c_int64)]
 
 
+class ToolC(Structure):
+    """struct vl_tool"""
+
+    _fields_ = [(name, c_double) for name in ("nose", "width", "chuck_edge", "free_edge")]
+
+
+class PathC(Structure):
+    """struct vl_path"""
+
+    _fields_ = [(name, c_double) for name in ("x_from", "z_from", "x_to", "z_to")]
+
+
+class CutC(Structure):
+    """struct vl_cut"""
+
+    _fields_ = [("columns", c_int32), ("fallen", c_int32), ("reach", c_double)]
+
+
 _BYTES = POINTER(c_uint8)
+_DOUBLES = POINTER(c_double)
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_load": (c_int, [c_char_p]),
     "vl_run": (c_int, [c_uint64]),
@@ -147,6 +166,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_clear_statistics": (None, []),
     "vl_watch_writes": (c_int, [c_uint, c_uint]),
     "vl_ram_writes": (c_int, [POINTER(RamWriteC), c_int]),
+    "vl_written": (None, [_BYTES]),
     "vl_pin_drive": (c_int, [c_int, c_int]),
     "vl_pin_drive_volts": (c_int, [c_int, c_double, c_double]),
     "vl_pin_level": (c_int, [c_int]),
@@ -161,7 +181,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_usb_connected": (c_int, []),
     "vl_usb_reset": (None, [c_int]),
     "vl_usb_suspend": (None, [c_int]),
-    "vl_usb_submit": (None, [c_int, c_uint, c_uint, c_uint, c_char_p, c_uint]),
+    "vl_usb_submit": (None, [c_int, c_uint, c_uint, c_uint, c_char_p, c_uint, c_int]),
     "vl_usb_result": (c_int, [_BYTES, POINTER(c_uint), POINTER(c_uint)]),
     "vl_usb_open": (None, [c_uint, c_uint, c_uint, c_uint]),
     "vl_usb_close": (None, []),
@@ -172,6 +192,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_usb_lose_handshakes": (None, [c_uint]),
     "vl_usb_counts": (None, [POINTER(UsbCountsC)]),
     "vl_usb_mistake": (c_int, [c_uint, c_char_p, c_uint]),
+    "vl_usb_report_mistake": (None, [c_char_p]),
     "vl_machine_attach": (None, []),
     "vl_axis_setup": (c_int, [c_int, POINTER(AxisSetupC)]),
     "vl_axis_read": (c_int, [c_int, POINTER(AxisStateC)]),
@@ -180,6 +201,15 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_switch_quality": (None, [c_uint, c_uint, c_uint]),
     "vl_moves": (c_int, [POINTER(MoveC), c_int]),
     "vl_faults": (c_int, [POINTER(FaultC), c_int]),
+    "vl_metal_new": (c_int, [c_double, c_int, c_int]),
+    "vl_metal_tool": (None, [c_int, POINTER(ToolC)]),
+    "vl_metal_move": (None, [c_int, POINTER(PathC), c_int, POINTER(CutC)]),
+    "vl_metal_radii": (c_int, [c_int, _DOUBLES, c_int]),
+    "vl_metal_radius": (c_double, [c_int, c_int]),
+    "vl_metal_fallen": (c_int, [c_int, _DOUBLES, c_int]),
+    "vl_tool_outline": (c_double, [POINTER(ToolC), c_double]),
+    "vl_above": (c_double, [_DOUBLES, c_int, c_int, c_int, c_double]),
+    "vl_reach": (None, [POINTER(ToolC), _DOUBLES, _DOUBLES, c_int, c_int]),
 }
 
 

@@ -3,19 +3,21 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+import math
 
 import pytest
 
 from virtual_lathe.decode_vcd import expand
+from virtual_lathe.driver import Driver
 from virtual_lathe.machine import Move
-from virtual_lathe.part import Cylinder, Face, WantedPart, read_part
+from virtual_lathe.part import Cylinder, Face, WantedPart
+from virtual_lathe.tool import Tool
 from virtual_lathe.workpiece import Stock, Workpiece
 
 SLOW, FAST = 24_000, 12_000
 
 
-class Tool:
+class Hand:
     """Leads the tool in part coordinates: radius and z in steps."""
 
     def __init__(self, work: Workpiece, x: int, z: int) -> None:
@@ -34,12 +36,12 @@ class Tool:
             self.work.cut([place])
 
 
-def _work(allowance: int = 0) -> tuple[Workpiece, Tool]:
+def _work(allowance: int = 0) -> tuple[Workpiece, Hand]:
     work = Workpiece(Stock(100, 400, allowance))
-    return work, Tool(work, 120, 30)
+    return work, Hand(work, 120, 30)
 
 
-def _turn(tool: Tool, radius: int, end: int) -> None:
+def _turn(tool: Hand, radius: int, end: int) -> None:
     tool.to(radius, 30, FAST)
     tool.to(radius, end)
     tool.to(radius + 10, end)
@@ -66,7 +68,8 @@ def test_what_is_cut_too_deep_too_far_or_not_at_all_is_found() -> None:
     wanted = WantedPart(100, 400, 0, (Cylinder(0, -200, 60),))
     diameter, length = work.dimensions(wanted, 7112, 7112)
     assert (diameter["error_steps"], length["error_steps"]) == (-2, 3)
-    assert work.gouge_max_steps(wanted) == 100 - 58
+    # 3 steps behind the shoulder and 2 below the surface, measured to the edge between them.
+    assert work.gouge_max_steps(wanted) == pytest.approx(math.hypot(3, 2))
     untouched, _ = _work()
     diameter, length = untouched.dimensions(wanted, 7112, 7112)
     assert (diameter["error_steps"], length["error_steps"]) == (40, -200)
@@ -101,35 +104,56 @@ def test_crashes_are_named() -> None:
     ]
 
 
+def test_the_holder_in_the_material_is_a_crash() -> None:
+    work = Workpiece(Stock(100, 400), tool=Tool(edge_length=30))
+    tool = Driver(work, 120, 30)
+    tool.along((75, 30), (75, -50), (60, 30))
+    assert work.crashes == []
+    tool.along((60, 30), (60, -70))
+    assert [crash.kind for crash in work.crashes] == ["holder into material"]
+
+
+def test_an_edge_that_leans_to_the_chuck_may_touch_it_before_the_tip_does() -> None:
+    for hand, kinds in (("left", ["chuck"]), ("right", [])):
+        work = Workpiece(Stock(100, 400, chuck_radius=120), tool=Tool(hand=hand))
+        Driver(work, 150, -350).to(105, -380)
+        assert [crash.kind for crash in work.crashes] == kinds
+
+
+def test_the_nose_may_pass_the_axis_by_its_radius() -> None:
+    for nose, kinds in ((20.0, []), (14.0, ["beyond the axis"])):
+        work = Workpiece(Stock(100, 400), tool=Tool(nose=nose))
+        Driver(work, 120, -1).to(-20, -1)
+        assert [crash.kind for crash in work.crashes] == kinds
+
+
+@pytest.mark.parametrize(("pace", "kinds"), [(SLOW, []), (FAST, ["rapid into material"])])
+def test_a_staircase_has_the_rate_of_its_slope(pace: int, kinds: list[str]) -> None:
+    """Two steps of Z to one of X at the same time, written one shortly after the other."""
+    work = Workpiece(Stock(100, 400), tool=Tool())
+    moves, cycle, x = [], 1_000_000, 60
+    for z in range(20, -60, -1):
+        cycle += pace * 9 // 8
+        if z % 2:
+            x += 1
+            moves.append(Move(cycle - 12, 2 * (x + work.zero_x), 2 * (z + 1 + work.zero_z)))
+        moves.append(Move(cycle, 2 * (x + work.zero_x), 2 * (z + work.zero_z)))
+    work.cut(moves)
+    assert [crash.kind for crash in work.crashes] == kinds
+    assert work.steps_cutting > 40
+
+
+def test_what_both_slides_do_at_once_is_one_straight_step() -> None:
+    work = Workpiece(Stock(100, 400), tool=Tool(back_clearance=50))
+    tool = Driver(work, 120, -100)
+    tool.to(60, -100)
+    x, z = 2 * (58 + work.zero_x), 2 * (-102 + work.zero_z)
+    work.cut([Move(tool.cycle + SLOW, x, z + 4), Move(tool.cycle + SLOW + 10, x, z)])
+    assert [work.radius_at(place) for place in (-102, -101, -100)] == [58, 59, pytest.approx(60)]
+
+
 def test_the_profile_holds_every_step() -> None:
     work, tool = _work(allowance=3)
     _turn(tool, 70, -33)
     radii = expand(work.profile(7112, 7112), 7112, 7112)
     assert radii == [work.radius_at(z) for z in range(-400, 4)]
-
-
-def test_a_part_file_becomes_steps_of_the_nearest_size(tmp_path: Path) -> None:
-    file = tmp_path / "bar.toml"
-    file.write_text(
-        '[part]\nname = "bar"\nunits = "inch"\n[stock]\ndiameter = 1.0\nlength = 2.0\n'
-        "allowance = 0.01\n[cut]\n"
-        '[[operation]]\ntype = "face"\nz = 0.0\n'
-        '[[operation]]\ntype = "cylinder"\nz = [0.0, -1.0]\ndiameter = 0.6\n',
-        encoding="utf-8",
-    )
-    part = read_part(file)
-    face, cylinder = part.operations
-    assert (part.stock_radius, part.length, part.front) == (1786, 7143, 36)
-    assert isinstance(face, Face)
-    assert (face.z, face.inner) == (0, 0)
-    assert isinstance(cylinder, Cylinder)
-    assert (cylinder.start, cylinder.end, cylinder.radius) == (0, -3571, 1071)
-    assert cylinder.drawn.radius == pytest.approx(7.62 / 0.007112)
-    assert cylinder.drawn.length == pytest.approx(25.4 / 0.007112)
-    surface = part.surface()
-    assert [surface[z] for z in (36, 0, -1, -3571, -3572)] == [0, 0, 1071, 1071, 1786]
-    file.write_text(
-        file.read_text(encoding="utf-8").replace('"face"', '"thread"'), encoding="utf-8"
-    )
-    with pytest.raises(ValueError, match="thread"):
-        read_part(file)

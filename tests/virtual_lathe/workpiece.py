@@ -1,24 +1,34 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The piece of metal in the chuck and the tool that cuts it.
+"""The piece of metal in the chuck, the tool that cuts it, and what must not happen to them.
 
-The surface is a radius for every step of Z (a point, not a slice). The tool is an ideal point with
-a body ``tool_width`` steps wide behind it, away from the chuck: whatever stands there higher than
-the point is removed as well. Material cut through to the axis falls off. Inside, radii are half
-steps, so that half-step motors are exact.
+Whatever the nose, the edges or the body of the tool sweep is removed; see ``metal.py``. Between
+two places the tool moves straight. Material cut through to the axis falls off.
 """
 
 from __future__ import annotations
 
+import math
+from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import zip_longest
 from typing import Any
 
 from .chip import CYCLES_PER_SECOND
+from .dimensions import Ruler
+from .judgement import Surface, gouge, left
 from .machine import Move
-from .part import Cylinder, Face, WantedPart
+from .metal import PER_STEP, Metal, Removal
+from .shape import Point, distance
+from .tool import BROAD, SQUARE, Tool
+from .wanted import WantedPart
 
 SAME_CRASH_S = 0.1
 BEYOND_AXIS_STEPS = 5
+#: Steps of both slides this near to each other (cycles) are one step of the tool.
+SAME_STEP_CYCLES = 100
+#: The rate is that of the way over so many steps, so that a staircase has the rate of its slope.
+RATE_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -46,6 +56,14 @@ class Stock:
     chuck_radius: int = 0
 
 
+@dataclass(frozen=True)
+class Piece:
+    """Metal that fell off: its first column and the radii of its columns."""
+
+    first: int
+    radii: list[float]
+
+
 @dataclass
 class Workpiece:
     """Stock being cut.
@@ -54,166 +72,147 @@ class Workpiece:
         stock: the raw material.
         zero_x: machine X of the spindle axis; ``zero_z``: machine Z of part zero, in steps.
         cut_rate_limit: a tool that removes metal faster than this (steps/s) has crashed.
+        tool: the tool in the holder at first.
     """
 
     stock: Stock
     zero_x: int = -3575
     zero_z: int = -8000
     cut_rate_limit: float = 900.0
-    tool_width: int = 200
+    tool: Tool = BROAD
     crashes: list[Crash] = field(default_factory=list)
     steps_cutting: int = 0
 
     def __post_init__(self) -> None:
         self.first_z = -self.stock.length
-        count = self.stock.length + self.stock.allowance + 1
-        self.radii = [2 * self.stock.radius] * count
-        # Highest radius from each point on towards the free end: one look tells that a tool
-        # touches nothing.
-        self._highest = list(self.radii)
-        self._last_cycle = 0
-        self._crash_cycles: dict[str, int] = {}
+        self.metal = Metal(self.stock.radius, self.first_z, self.stock.allowance, self.tool)
+        self.pieces: list[Piece] = []
         self.chuck_radius = self.stock.chuck_radius or self.stock.radius + 1500
+        self._slides: Point | None = None
+        self._trail: deque[tuple[int, Point]] = deque(maxlen=RATE_STEPS)
+        self._crash_cycles: dict[str, int] = {}
 
-    def radius_at(self, z: int) -> float:
+    def radius_at(self, z: float) -> float:
         """Return the radius in steps at ``z`` steps from part zero; 0 outside the material."""
-        index = z - self.first_z
-        return self.radii[index] / 2 if 0 <= index < len(self.radii) else 0.0
+        column = math.floor((z - self.first_z) * PER_STEP)
+        return self.metal.radius(column) if 0 <= column < self.metal.count else 0.0
+
+    # -- cutting ----------------------------------------------------------------------------------
+
+    def change_tool(self, tool: Tool) -> None:
+        """Put another tool into the holder, where the slides stand."""
+        self.tool = tool
+        self.metal.set_tool(tool)
+        if self._slides is not None:
+            tip = self._tip(self._slides)
+            if self.metal.move(tip, tip, trial=True):
+                cycle = self._trail[-1][0] if self._trail else 0
+                self._crash("tool changed inside the material", cycle, tip, 0.0)
 
     def cut(self, moves: Iterable[Move]) -> None:
-        """Let the tool follow movements of the slides."""
-        for move in moves:
-            x = move.x - 2 * self.zero_x
-            z = (move.z - 2 * self.zero_z) / 2
-            rate = CYCLES_PER_SECOND / max(1, move.cycle - self._last_cycle)
-            self._last_cycle = move.cycle
-            self._tool_at(move.cycle, x, z, rate)
+        """Let the tool follow movements of the slides.
 
-    def _tool_at(self, cycle: int, x: int, z: float, rate: float) -> None:
-        index = int(z // 1) - self.first_z
-        if z < self.first_z:
-            if x < 2 * self.chuck_radius:
-                self._crash("chuck", cycle, x, z, rate)
+        Of two slides that step at once only the place where both have arrived counts.
+        """
+        every = list(moves)
+        for move, then in zip_longest(every, every[1:]):
+            if then is None or then.cycle - move.cycle >= SAME_STEP_CYCLES:
+                self._follow(move)
+
+    def _follow(self, move: Move) -> None:
+        slides = Point(move.z / 2 - self.zero_z, move.x / 2 - self.zero_x)
+        rate = self._rate(move.cycle, slides)
+        tip = self._tip(slides)
+        start = tip if self._slides is None else self._tip(self._slides)
+        self._slides = slides
+        if self._is_in_chuck(tip):
+            self._crash("chuck", move.cycle, tip, rate)
             return
-        if index >= len(self.radii) or self._highest[index] <= x:
-            return
-        if x < -2 * BEYOND_AXIS_STEPS:
-            self._crash("beyond the axis", cycle, x, z, rate)
-        if z != index + self.first_z:
-            index += 1
-        if self._remove(index, max(x, 0)):
+        removal = self.metal.move(start, tip)
+        if removal is not None:
             self.steps_cutting += 1
-            if rate > self.cut_rate_limit:
-                self._crash("rapid into material", cycle, x, z, rate)
+            self._judge(removal, move.cycle, tip, rate)
 
-    def _remove(self, index: int, x: int) -> bool:
-        removed = False
-        last = len(self.radii) if x == 0 else min(len(self.radii), index + self.tool_width + 1)
-        for i in range(index, last):
-            if self._highest[i] <= x:
-                break
-            if self.radii[i] > x:
-                self.radii[i] = x
-                removed = True
-        if removed:
-            self._update_highest(index, last - 1)
-        return removed
+    def _tip(self, slides: Point) -> Point:
+        return Point(slides.z - self.tool.offset_z, slides.x - self.tool.offset_x)
 
-    def _update_highest(self, first: int, last: int) -> None:
-        above = self._highest[last + 1] if last + 1 < len(self.radii) else 0
-        for i in range(last, -1, -1):
-            above = max(above, self.radii[i])
-            if self._highest[i] == above and i < first:
-                break
-            self._highest[i] = above
+    def _rate(self, cycle: int, place: Point) -> float:
+        """The speed of the tool in steps/s: of this step or of the last few, the slower one."""
+        rates = (
+            [
+                distance(place, last) * CYCLES_PER_SECOND / max(1, cycle - then)
+                for then, last in (self._trail[0], self._trail[-1])
+            ]
+            if self._trail
+            else [0.0]
+        )
+        self._trail.append((cycle, place))
+        return min(rates)
 
-    def _crash(self, kind: str, cycle: int, x: int, z: float, rate: float) -> None:
+    def _is_in_chuck(self, tip: Point) -> bool:
+        """Whether nose or edge touch the chuck; an edge ends at its length."""
+        beyond = self.first_z - tip.z
+        edge, _ = self.tool.edges
+        if tip.x >= self.chuck_radius or (beyond <= 0 and edge >= SQUARE):
+            return False
+        lowest = 0.0 if beyond > self.tool.nose else self.tool.outline(beyond)
+        return lowest <= self.tool.edge_length and tip.x + lowest < self.chuck_radius
+
+    def _judge(self, removal: Removal, cycle: int, tip: Point, rate: float) -> None:
+        if tip.x < -BEYOND_AXIS_STEPS - self.tool.nose:
+            self._crash("beyond the axis", cycle, tip, rate)
+        if rate > self.cut_rate_limit:
+            self._crash("rapid into material", cycle, tip, rate)
+        if removal.reach > self.tool.edge_length:
+            self._crash("holder into material", cycle, tip, rate)
+        if removal.severed is not None:
+            self.pieces.append(Piece(removal.severed, self.metal.fallen()))
+
+    def _crash(self, kind: str, cycle: int, tip: Point, rate: float) -> None:
         last = self._crash_cycles.get(kind)
         self._crash_cycles[kind] = cycle
         if last is not None and cycle - last < SAME_CRASH_S * CYCLES_PER_SECOND:
             return
-        self.crashes.append(Crash(kind, cycle / CYCLES_PER_SECOND, x / 2, z, round(rate, 1)))
+        self.crashes.append(Crash(kind, cycle / CYCLES_PER_SECOND, tip.x, tip.z, round(rate, 1)))
 
     # -- measuring --------------------------------------------------------------------------------
 
-    def profile(self, step_x_nm: int, step_z_nm: int) -> list[list[float]]:
-        """Return ``[z_mm, diameter_mm]`` from the chuck to the free end.
+    def surface(self, wanted: WantedPart | None = None) -> Surface:
+        """Return what there is to measure; a part that was parted off is put back in its place."""
+        radii = self.metal.radii()
+        parted_at = wanted.parted_at() if wanted else None
+        for piece in self.pieces if parted_at is not None else ():
+            if piece.first / PER_STEP + self.first_z <= (parted_at or 0.0) + 1:
+                radii[piece.first :] = piece.radii
+        return Surface(self.first_z, radii)
+
+    def profile(
+        self, step_x_nm: int, step_z_nm: int, wanted: WantedPart | None = None
+    ) -> list[list[float]]:
+        """Return ``[z_mm, diameter_mm]`` from the chuck to the free end, at whole steps.
 
         Points between two neighbours of the same diameter are left out.
         """
+        radii = self.surface(wanted).radii[::PER_STEP]
         points: list[list[float]] = []
-        for i, radius in enumerate(self.radii):
-            inner = 0 < i < len(self.radii) - 1
-            if inner and self.radii[i - 1] == radius == self.radii[i + 1]:
+        for i, radius in enumerate(radii):
+            inner = 0 < i < len(radii) - 1
+            if inner and radii[i - 1] == radius == radii[i + 1]:
                 continue
             z = (i + self.first_z) * step_z_nm / 1e6
-            points.append([round(z, 6), round(radius * step_x_nm / 1e6, 6)])
+            points.append([round(z, 6), round(2 * radius * step_x_nm / 1e6, 6)])
         return points
 
     def gouge_max_steps(self, wanted: WantedPart) -> float:
-        """Return how far the surface lies below the wanted one at its worst, in steps."""
-        surface = wanted.surface()
-        return max((max(0.0, want - self.radius_at(z)) for z, want in surface.items()), default=0.0)
+        """Return how deep the tool went into the wanted part, in steps."""
+        return gouge(self.surface(wanted), wanted)
 
-    def face_position(self, inner: int) -> int:
-        """Return the z (steps) of the end face outside radius ``inner``."""
-        for i in range(len(self.radii) - 1, -1, -1):
-            if self.radii[i] > 2 * inner:
-                return i + self.first_z + 1
-        return self.first_z
+    def left_max_steps(self, wanted: WantedPart) -> float:
+        """Return how thick the metal is that the tools could have taken off, in steps."""
+        return left(self.surface(wanted), wanted)
 
     def dimensions(
         self, wanted: WantedPart, step_x_nm: int, step_z_nm: int
     ) -> list[dict[str, Any]]:
         """Compare every operation with what was cut; errors in steps, + is too much metal."""
-        surface = wanted.surface()
-        found: list[dict[str, Any]] = []
-        numbers = {"face": 0, "cylinder": 0}
-        for operation in wanted.operations:
-            kind = "face" if isinstance(operation, Face) else "cylinder"
-            numbers[kind] += 1
-            name = f"{kind} {numbers[kind]}"
-            if isinstance(operation, Face):
-                z = self.face_position(operation.inner)
-                found.append(_dimension(f"{name} z", operation.drawn.length, z, step_z_nm / 1e6))
-            else:
-                found += self._cylinder(name, operation, surface, step_x_nm, step_z_nm)
-        return found
-
-    def _cylinder(
-        self,
-        name: str,
-        cylinder: Cylinder,
-        surface: dict[int, int],
-        step_x_nm: int,
-        step_z_nm: int,
-    ) -> list[dict[str, Any]]:
-        own = [
-            z for z in range(cylinder.end, cylinder.start + 1) if surface.get(z) == cylinder.radius
-        ]
-        if not own:
-            return []
-        radius = max((self.radius_at(z) for z in own), key=lambda r: abs(r - cylinder.radius))
-        measured = _dimension(
-            f"{name} diameter", cylinder.drawn.radius, radius, 2 * step_x_nm / 1e6
-        )
-        end = cylinder.end
-        if surface.get(end - 1, 0) > cylinder.radius:
-            half_way = (self.stock.radius + cylinder.radius) / 2
-            wall = min(half_way, surface[end - 1] - 0.5)
-            shoulder = own[-1]
-            while shoulder > self.first_z and self.radius_at(shoulder - 1) < wall:
-                shoulder -= 1
-            end = shoulder
-        cut = cylinder.start - end
-        length = _dimension(f"{name} length", cylinder.drawn.length, cut, step_z_nm / 1e6)
-        return [measured, length]
-
-
-def _dimension(name: str, wanted: float, cut: float, mm: float) -> dict[str, Any]:
-    return {
-        "name": name,
-        "wanted_mm": round(wanted * mm, 6),
-        "cut_mm": round(cut * mm, 6),
-        "error_steps": round(cut - wanted, 3),
-    }
+        return Ruler(self.surface(wanted), wanted, step_x_nm, step_z_nm).dimensions()

@@ -21,6 +21,17 @@ class PartError(TornilloError):
     """A part file is refused; the message starts with `file:line:`."""
 
 
+class DrawingError(TornilloError):
+    """A drawing cannot be made a part; `marks` are its places with what is there."""
+
+    def __init__(
+        self, message: str, remedy: str, marks: tuple[tuple[tuple[float, float], str], ...] = ()
+    ) -> None:
+        """Keep what happened, what to do about it, and the places in units of the drawing."""
+        super().__init__(message, remedy)
+        self.marks = marks
+
+
 class MachineError(TornilloError):
     """A machine file is refused."""
 

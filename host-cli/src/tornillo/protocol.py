@@ -19,10 +19,10 @@ FRAME_RESPONSE_BIT = 0x80
 CRC16_POLYNOMIAL = 0x1021
 CRC16_INITIAL = 0xFFFF
 CRC16_CHECK = 0x29B1
-#: units of the part store; a part takes one to five, its slot is the first
-PART_SLOTS = 16
+#: units of the part store; a part takes one to ten, its slot is the first
+PART_SLOTS = 12
 #: bytes of one unit, 64 of them for its header when it is a part's first
-PART_UNIT = 512
+PART_UNIT = 256
 #: no slot; in RUN: the selected part
 SLOT_NONE = 255
 #: bytes of a part image
@@ -37,10 +37,10 @@ NAME_LENGTH = 16
 SERIAL_LENGTH = 8
 #: steps, largest length or radius in a part image: the chip counts in 16 bits
 POSITION_MAX = 32000
-#: 1/256 step/s, slowest feed: 4 step/s
-FEED_MIN = 1024
+#: 1/8 step/s, slowest feed: 4 step/s
+FEED_MIN = 32
 #: feed units of one step/s
-FEED_UNIT = 256
+FEED_UNIT = 8
 #: percent, slowest feed override
 OVERRIDE_MIN = 10
 #: percent, fastest feed override
@@ -59,8 +59,14 @@ SLOPE_ANY = 65535
 CONTOUR_KIND = 15
 #: bit of a contour's kind: roughed in facing direction
 CONTOUR_FACING = 128
+#: steps, largest retract: sums with it stay below 16 bits
+RETRACT_MAX = 8000
+#: steps, most raw material in front of z = 0
+STOCK_FRONT_MAX = 8000
+#: steps, widest grooving tool
+WIDTH_MAX = 8000
 #: steps, largest radius of an arc
-RADIUS_MAX = 46000
+RADIUS_MAX = 32000
 #: progress of a finished run
 PERMILLE_DONE = 1000
 
@@ -87,6 +93,7 @@ class Command(IntEnum):
     PART_DELETE = 0x16
     SETTING_GET = 0x20
     SETTING_SET = 0x21
+    SERIAL_SET = 0x22
 
 
 class Axis(IntEnum):
@@ -261,6 +268,7 @@ REQUESTS = {
     Command.PART_DELETE: Struct("<B"),
     Command.SETTING_GET: Struct("<B"),
     Command.SETTING_SET: Struct("<Bi"),
+    Command.SERIAL_SET: Struct("<8s"),
 }
 #: Response data after the error byte; PART_READ answers bytes alone.
 RESPONSES = {
@@ -283,6 +291,7 @@ RESPONSES = {
     Command.PART_DELETE: Struct("<"),
     Command.SETTING_GET: Struct("<iii"),
     Command.SETTING_SET: Struct("<"),
+    Command.SERIAL_SET: Struct("<"),
 }
 #: Header of a part image.
 IMAGE_HEADER = Struct("<BBBB16sHHHHHH")
@@ -290,7 +299,7 @@ IMAGE_FORMAT = 2
 #: Records: type, kind, size of the whole, then the closed fields of the type.
 OPERATION_RECORDS = {
     OperationType.TOOL: Struct("<BBH12sHHHHHhh"),
-    OperationType.CUT: Struct("<BBHHHIIHH"),
+    OperationType.CUT: Struct("<BBHHHHHHH"),
     OperationType.PAUSE: Struct("<BBH"),
     OperationType.CONTOUR: Struct("<BBHhh"),
     OperationType.PLUNGE: Struct("<BBHhhh"),

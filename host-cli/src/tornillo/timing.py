@@ -87,7 +87,7 @@ def next_speed(task: Task, speed: float, left: int) -> float:
     limit = min(NO_LIMIT, max(0, 2 * left - 2 - int(speed) // 256) + task.allowed)
     change = drives.acceleration * TICK_S
     least = min(drives.start, rate)
-    if speed > least and drives.distance(speed) > limit:
+    if speed > drives.start and drives.distance(speed) > limit:
         return max(speed - change, least)
     if speed < rate:
         faster = min(speed + change, rate)

@@ -97,6 +97,8 @@ struct vl_ram_write {
     uint32_t address, value, pc;
 };
 int vl_ram_writes(struct vl_ram_write *entries, int room);
+/* One byte per watched address, 1 = written since it is watched; no limit. */
+void vl_written(uint8_t flags[4096]);
 
 /* ---- Pins: pins.cc ------------------------------------------------------ */
 
@@ -144,9 +146,11 @@ enum vl_token { VL_OUT = 1, VL_IN = 9, VL_SETUP = 13 };
 enum vl_handshake { VL_NONE = 0, VL_ACK = 1, VL_NAK = 2, VL_STALL = 3 };
 /* Queues one transaction; vl_run() stops with VL_STOP_EVENT when it is over,
  * then vl_usb_result() gives the enum vl_handshake (VL_NONE: no answer), and
- * for IN the data and the toggle.  Before that it gives -1. */
+ * for IN the data and the toggle.  Before that it gives -1.  fresh says of an
+ * OUT that it was never sent before, so that dropping it is a mistake. */
 void vl_usb_submit(int token, unsigned address, unsigned endpoint,
-                   unsigned toggle, const uint8_t *data, unsigned count);
+                   unsigned toggle, const uint8_t *data, unsigned count,
+                   int fresh);
 int vl_usb_result(uint8_t data[64], unsigned *count, unsigned *toggle);
 
 /* The serial port: from vl_usb_open() on bulk OUT is sent as long as there is
@@ -168,6 +172,8 @@ struct vl_usb_counts {
 void vl_usb_counts(struct vl_usb_counts *counts);
 /* Text of the n-th mistake of the firmware; -1 when there are fewer. */
 int vl_usb_mistake(unsigned index, char *text, unsigned room);
+/* Adds one that only the host can see. */
+void vl_usb_report_mistake(const char *text);
 
 /* ---- Machine: machine.cc ------------------------------------------------- */
 
@@ -227,6 +233,48 @@ struct vl_fault {
     int64_t value;
 };
 int vl_faults(struct vl_fault *entries, int room);
+
+/* ---- Metal: metal.cc, reach.cc ------------------------------------------- */
+
+/* A bar that a tool cuts, in part coordinates: x a radius, z = 0 the front of
+ * the finished part, both in steps.  It needs no chip; there may be many. */
+#define VL_COLUMNS_PER_STEP 16
+struct vl_tool {
+    double nose;       /* radius of the nose, steps */
+    double width;      /* of a grooving tool, from the tip away from the chuck;
+                          0: the tool ends in its nose */
+    double chuck_edge; /* degrees between the Z axis and the edge towards the */
+    double free_edge;  /* chuck and towards the free end; 90 = square */
+};
+/* Returns a number for the calls below; radii stand at first_z..last_z. */
+int vl_metal_new(double radius, int first_z, int last_z);
+void vl_metal_tool(int metal, const struct vl_tool *tool);
+struct vl_path {
+    double x_from, z_from, x_to, z_to; /* of the tip */
+};
+struct vl_cut {
+    int32_t columns; /* how often one was lowered, 0: nothing was touched */
+    int32_t fallen;  /* column from which on the bar fell off, or -1 */
+    double reach;    /* from the tip to the highest metal it removed, steps */
+};
+/* Moves the tool on a straight line; a trial only tells what it would cut. */
+void vl_metal_move(int metal, const struct vl_path *path, int trial,
+                   struct vl_cut *cut);
+/* Radii of all columns; returns how many there are. */
+int vl_metal_radii(int metal, double *radii, int room);
+double vl_metal_radius(int metal, int column);
+/* The same of the piece that fell off last, from its first column on. */
+int vl_metal_fallen(int metal, double *radii, int room);
+/* How far above its tip the tool begins at a distance u along Z. */
+double vl_tool_outline(const struct vl_tool *tool, double u);
+/* The lowest surface a tool can cut without going below the wanted one, both
+ * with `count` radii, `per_step` of them to a step. */
+void vl_reach(const struct vl_tool *tool, const double *wanted, double *reached,
+              int count, int per_step);
+/* How far a radius at a column stands above such a surface, in steps: the
+ * distance to the lines between its radii.  Infinite radii are no surface. */
+double vl_above(const double *surface, int count, int per_step, int column,
+                double radius);
 
 #ifdef __cplusplus
 }

@@ -63,6 +63,8 @@ docs: | $(SETUP_STAMP) ## refresh the generated parts of docs/
 	@$(PYTHON) firmware/link/generate_protocol.py
 	@$(PYTHON) docs/generate_tables.py
 	@$(VENV)/bin/tornillo draw host-cli/examples/test-bar.toml -o docs/images/test-bar.png
+	@for part in pockets disc; do \
+	  $(VENV)/bin/tornillo draw docs/parts/$$part.toml -o docs/images/$$part.png; done
 	@$(VENV)/bin/tornillo import-dxf host-cli/examples/pawn.dxf -o build/pawn.toml --force \
 	  --back-clearance 52 --picture docs/images/pawn-import.png
 

@@ -7,6 +7,7 @@ import random
 from tornillo.image import PartImage, Record, Segment, SegmentKind, pack_segments
 from tornillo.protocol import (
     CONTOUR_FACING,
+    FEED_UNIT,
     IMAGE_FORMAT,
     SLOPE_ANY,
     ContourRecord,
@@ -17,7 +18,7 @@ from tornillo.protocol import (
     ToolRecord,
 )
 
-FEED, FINISH_FEED = 25_600, 12_800
+FEED, FINISH_FEED = 100 * FEED_UNIT, 50 * FEED_UNIT
 RETRACT = 5
 #: A tool that can go anywhere.
 POINT = ToolRecord(0, b"point", 0, 0, 0, SLOPE_ANY, SLOPE_ANY, 0, 0)

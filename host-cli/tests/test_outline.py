@@ -95,6 +95,11 @@ def test_what_is_turned_away_is_not_there() -> None:
     assert ends(found) == [(-10, 10, -30, 10)]
 
 
+def test_what_is_parted_off_is_the_part() -> None:
+    found = shape(FACE, 'type = "part-off"\ntool = "parting"\nz = -20.0')
+    assert ends(found) == [(0, 10, -20, 10), (-20, 0, -22, 0), (-22, 10, -30, 10)]
+
+
 def test_a_diameter_behind_a_larger_one_is_hidden() -> None:
     pieces = shape(
         FACE,

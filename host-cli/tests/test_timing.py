@@ -8,6 +8,7 @@ from tornillo.drives import Drives, LegPlanner
 from tornillo.machine import Machine
 from tornillo.moves import Move
 from tornillo.planning import plan_part
+from tornillo.protocol import FEED_UNIT
 from tornillo.roughing_time import facing_is_shorter
 from tornillo.timing import BEGIN_S, REST_S, axis_steps, move_times, time_plan
 
@@ -20,8 +21,8 @@ def seconds(*moves: Move, drives: Drives = DRIVES) -> float:
 
 
 def test_a_feed_below_the_start_rate_takes_its_length() -> None:
-    assert seconds(Move((0, 0), (-300, 0), 100 * 256)) == pytest.approx(3 + BEGIN_S)
-    assert seconds(Move((0, 0), (-300, 400), 100 * 256)) == pytest.approx(5 + BEGIN_S, rel=1e-3)
+    assert seconds(Move((0, 0), (-300, 0), 100 * FEED_UNIT)) == pytest.approx(3 + BEGIN_S)
+    assert seconds(Move((0, 0), (-300, 400), 100 * FEED_UNIT)) == pytest.approx(5 + BEGIN_S, rel=1e-3)
 
 
 def test_a_rapid_has_its_ramps() -> None:
@@ -31,7 +32,7 @@ def test_a_rapid_has_its_ramps() -> None:
 
 
 def test_turning_back_takes_a_rest_and_the_dead_steps() -> None:
-    there, back = Move((0, 0), (-400, 0), 25_600), Move((-400, 0), (0, 0), 25_600)
+    there, back = Move((0, 0), (-400, 0), 100 * FEED_UNIT), Move((-400, 0), (0, 0), 100 * FEED_UNIT)
     assert seconds(there, back) == pytest.approx(8 + REST_S + BEGIN_S)
     play = Drives(1_000, 1_000, 400, 400, 8_000, dead_x=50, dead_z=20)
     assert seconds(there, back, drives=play) == pytest.approx(8 + REST_S + BEGIN_S + 20 / 100)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from tornillo.finished import FinishedPart
 from tornillo.grid import Grid, path_segments
 from tornillo.image import FLAG_INCH, PartImage, Record, Segment, pack_segments
-from tornillo.material import Chain, Material, chain_of, plunge_chain
+from tornillo.material import Chain, chain_of
 from tornillo.operations import Contour, Operation, Pause, Plunge
 from tornillo.protocol import (
     CONTOUR_FACING,
@@ -23,7 +23,8 @@ from tornillo.protocol import (
     ToolRecord,
 )
 from tornillo.protocol_texts import REFUSAL_TEXTS
-from tornillo.roughing import Passes, fewer_facing, never_falls
+from tornillo.roughing import never_falls
+from tornillo.roughing_time import facing_is_shorter
 from tornillo.stock import Stock
 from tornillo.tip import Fault, Reach, edge_faults, fault, tip_of
 from tornillo.tool_records import tool_record
@@ -100,7 +101,6 @@ class _Compiler:
         self.scale = scale
         unit = NM_PER_UNIT[scale.units]
         self.grid = Grid(unit / header.step_z_nm, unit / header.step_x_nm)
-        self.material = Material(header.stock_radius, header.stock_front)
         self.cuttings: dict[int, Cutting] = {}
         self.free_fronts: dict[int, bool] = {}
         self.records: list[Record] = []
@@ -171,7 +171,7 @@ class _Compiler:
                 continue
             pause = isinstance(operation.shape, Pause)
             cut = cut if pause else operation
-            facing = self._facing(operation)
+            facing = self._facing(operation, tools)
             if not pause or not self.records:
                 self._state(tools[cut.tool.name], Origin("tool", cut))
                 self._state(self._cut_record(cut, facing), Origin("cut", cut))
@@ -230,11 +230,12 @@ class _Compiler:
         if isinstance(shape, Pause):
             return PauseRecord(PAUSES.index(operation.type), shape.message.encode("ascii"))
         if isinstance(shape, Plunge):
-            plunge = self._plunge(operation, shape)
-            self.material.cut(plunge_chain(plunge, self.scale.z_steps(operation.tool.width)))
-            return plunge
+            return self._plunge(operation, shape)
+        return self._contour_record(operation, facing)
+
+    def _contour_record(self, operation: Operation, facing: bool) -> ContourRecord:
+        """A contour that is roughed in one direction or the other."""
         cutting = self.cuttings[operation.position]
-        self.material.cut(chain_of(*cutting, facing))
         kind = KINDS.index(operation.type) | (CONTOUR_FACING if facing else 0)
         return ContourRecord(kind, cutting.z, cutting.x, pack_segments(cutting.segments))
 
@@ -250,7 +251,7 @@ class _Compiler:
             x = max(-nose, min(0, round(self._least_x(operation) * self.grid.x)))
         return PlungeRecord(PLUNGES.index(operation.type), high, low, x)
 
-    def _facing(self, operation: Operation) -> bool:
+    def _facing(self, operation: Operation, tools: dict[str, ToolRecord]) -> bool:
         """Whether a contour is roughed in facing direction."""
         if not isinstance(operation.shape, Contour):
             return False
@@ -260,14 +261,11 @@ class _Compiler:
             return True
         if operation.roughing == "along" or not self.free_fronts[operation.position]:
             return False
-        scale, cut = self.scale, operation.cut
-        passes = Passes(
-            depth_x=scale.x_steps(cut.depth_of_cut),
-            depth_z=scale.z_steps(cut.depth_of_cut),
-            allowance=scale.x_steps(cut.finish_allowance),
-            below=scale.x_steps(operation.tool.nose_radius),
-        )
-        return never_falls(chain) and fewer_facing(chain, self.material, passes)
+        cut = self._cut_record(operation, facing=False)
+        if not never_falls(chain) or not cut.depth_of_cut:
+            return False
+        before = (*self.records, tools[operation.tool.name], cut)
+        return facing_is_shorter(self.header, before, self._contour_record(operation, False))
 
     def _must_face(self, operation: Operation, chain: Chain) -> None:
         """Note why a contour cannot be roughed in facing direction, if so."""

@@ -130,17 +130,28 @@ def _draw_material(scene: Scene, view: View, part: Part, pieces: tuple[Element, 
     low = view.at(-stock.length, -stock.diameter / 2)
     high = view.at(stock.allowance, stock.diameter / 2)
     scene.area(STOCK_FILL, *_rectangle(low, high))
-    upper = view.trace(pieces)
-    around = [*((z, -x) for z, x in reversed(upper)), *upper]
-    if upper:
+    for body in bodies(pieces):
+        upper = view.trace(body)
+        around = [*((z, -x) for z, x in reversed(upper)), *upper]
         scene.area(PART_FILL, *(view.at(*corner) for corner in around))
-        scene.line(OUTLINE, *(view.at(*corner) for corner in around))
+        scene.line(OUTLINE, *(view.at(*corner) for corner in (*around, around[0])))
     for number, piece in enumerate(pieces):
         after = pieces[number + 1] if number + 1 < len(pieces) else None
         if after is None or not smooth(piece, after):
             edge = view.at(piece.end.z, piece.end.x), view.at(piece.end.z, -piece.end.x)
             scene.line(SHOULDER, *edge)
     scene.box(STOCK_EDGE, low, high)
+
+
+def bodies(pieces: tuple[Element, ...]) -> list[list[Element]]:
+    """The outline in front of a parting and behind it."""
+    found: list[list[Element]] = [[]]
+    for piece in pieces:
+        if max(piece.start.x, piece.end.x) < TOUCHING:
+            found.append([])
+        else:
+            found[-1].append(piece)
+    return [body for body in found if body]
 
 
 def smooth(piece: Element, after: Element) -> bool:

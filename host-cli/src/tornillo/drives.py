@@ -16,7 +16,7 @@ from tornillo.moves import Move
 from tornillo.protocol import FEED_UNIT, SETTINGS, SettingId
 
 #: Segments that the chip looks ahead over, behind the one that is being made.
-AHEAD = 16
+AHEAD = 14
 UNIT, TANGENT, BACK = 128, 2, 144
 NO_LIMIT = 0xFFFF
 #: Dead steps are taken up before the turning point of an arc in so many entries at most.
@@ -120,7 +120,8 @@ def sizes(move: Move) -> tuple[float, float]:
     last = math.atan2(move.dx - move.cx / CENTRE_UNIT, move.dz - move.cz / CENTRE_UNIT)
     sweep = (last - first if move.kind is SegmentKind.CONVEX else first - last) % math.tau
     low = first if move.kind is SegmentKind.CONVEX else first - sweep
-    return radius * (_faster(low + sweep) - _faster(low)), radius * sweep
+    entries = radius * (_faster(low + sweep) - _faster(low))
+    return max(entries, abs(move.dx), abs(move.dz)), radius * sweep
 
 
 def x_turns(move: Move) -> list[int]:

@@ -15,20 +15,23 @@ from tornillo.part import Part
 
 #: File units below which a piece is not there.
 SLIVER = 1e-6
-#: Above it there is always material in front of a face.
-NOTHING = -1.0
 
 
 class Cover(NamedTuple):
-    """A piece that nothing stands above, from `front` to `back`."""
+    """A piece that nothing stands above, from `front` to `back`; `parts` off what is in front."""
 
     element: Element
     front: float
     back: float
+    parts: bool = False
 
 
 def outline(part: Part) -> tuple[Element, ...]:
-    """The outline of `part`; empty when nothing is left of it."""
+    """The outline of `part`; empty when nothing is left of it.
+
+    What stands in front of a place that is turned away falls off, but for what is parted off: that
+    is the part.
+    """
     stock = part.stock
     raw = Line(Point(stock.allowance, stock.diameter / 2), Point(-stock.length, stock.diameter / 2))
     covers = [Cover(raw, raw.start.z, raw.end.z)]
@@ -37,9 +40,10 @@ def outline(part: Part) -> tuple[Element, ...]:
     covers = [cover for cover in covers if cover.front - cover.back > SLIVER]
     pieces: list[Element] = []
     for front, back in pairwise(_breaks(covers, stock.allowance, -stock.length)):
-        element = _lowest(covers, (front + back) / 2)
+        lowest = _lowest(covers, (front + back) / 2)
+        element = lowest.element
         start, end = _at(element, front), _at(element, back)
-        if min(start.x, end.x) < SLIVER and max(start.x, end.x) < SLIVER:
+        if max(start.x, end.x) < SLIVER and not lowest.parts:
             pieces.clear()
         elif pieces and _same(pieces[-1], element):
             pieces[-1] = pieces[-1].between(pieces[-1].start, end)
@@ -57,7 +61,7 @@ def _covers(operation: Operation, front: float) -> Iterator[Cover]:
             back -= operation.tool.width
         radius = max(shape.diameter / 2, 0.0)
         floor = Line(Point(shape.front, radius), Point(back, radius))
-        yield Cover(floor, shape.front, back)
+        yield Cover(floor, shape.front, back, operation.type == "part-off")
     elif isinstance(shape, Contour):
         first = shape.elements[0].start
         if operation.type == "face":
@@ -85,10 +89,10 @@ def _breaks(covers: list[Cover], front: float, back: float) -> list[float]:
     return kept
 
 
-def _lowest(covers: list[Cover], z: float) -> Element:
+def _lowest(covers: list[Cover], z: float) -> Cover:
     """The piece that is the lowest at `z`; there always is the stock."""
-    here = [cover.element for cover in covers if cover.back < z < cover.front]
-    return min(here, key=lambda element: _at(element, z).x)
+    here = [cover for cover in covers if cover.back < z < cover.front]
+    return min(here, key=lambda cover: _at(cover.element, z).x)
 
 
 def _at(element: Element, z: float) -> Point:

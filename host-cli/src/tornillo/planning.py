@@ -8,7 +8,7 @@ Whole numbers only, and the same ones as on the chip: what `tornillo plan` and `
 show is what will be cut. docs/passes.md explains it with pictures.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from tornillo.image import PartImage, Record
 from tornillo.machine import Machine
@@ -109,13 +109,32 @@ class Planner:
             halt = Halt.DRILL if record.kind else Halt.PAUSE
             yield self._park(halt, record.message.decode("ascii", "replace"))
         elif isinstance(record, PlungeRecord):
-            chain = plunge_chain(record, self.tool.width)
-            yield from self._plunge(record, chain)
-            self.material.cut(chain)
+            yield from self._plunge(record, self._chain(record))
         else:
-            chain = contour_chain(record)
-            yield from self._contour(record, chain)
-            self.material.cut(chain)
+            yield from self._contour(record, self._chain(record))
+        self._cut_away(record)
+
+    def suppose(self, records: Iterable[Record]) -> None:
+        """Go on as after `records`, without their moves."""
+        for record in records:
+            if isinstance(record, ToolRecord):
+                self._tool = record
+            elif isinstance(record, CutRecord):
+                self._cut = record
+            else:
+                self.operation += 1
+                self._cut_away(record)
+
+    def _chain(self, record: ContourRecord | PlungeRecord) -> Chain:
+        """The contour of an operation."""
+        if isinstance(record, PlungeRecord):
+            return plunge_chain(record, self.tool.width)
+        return contour_chain(record)
+
+    def _cut_away(self, record: Record) -> None:
+        """From now on what an operation cuts is gone."""
+        if isinstance(record, ContourRecord | PlungeRecord):
+            self.material.cut(self._chain(record))
 
     def _change_tool(self, record: ToolRecord) -> Iterator[Stop]:
         """Park for another tool; positions are then those of the new one."""
@@ -142,20 +161,23 @@ class Planner:
         return 0 if vertical else self.cut.finish_allowance
 
     def _contour(self, record: ContourRecord, chain: Chain) -> Iterator[Pass]:
-        """Roughing along Z or in facing direction, then along the contour."""
+        """Roughing along Z or in facing direction, then along the contour; nothing in air."""
         allowance = self._allowance(chain)
         if chain.facing:
             front = self.material.stock_front
             top = self.material.highest(front, chain.z_end, self.tool.below)
             begin = self.material.free_end(chain.x, front)
+            if begin <= chain.z_end:
+                return
             yield from self._rough_facing(chain, top, begin, allowance)
         else:
             top = self.material.highest(chain.z, chain.z_end, self.tool.below)
-            begin = self.material.free_end(chain.x, chain.z + self.retract)
-            allowance = min(allowance, max(0, top - chain.lowest))
+            if top <= chain.lowest:
+                return
+            allowance = min(allowance, top - chain.lowest)
             yield from self._rough_along(chain, top, allowance)
         if not (chain.simple and allowance == 0):
-            yield from self._along_contour(record, chain, top, allowance, begin <= chain.z)
+            yield from self._along_contour(record, chain, top, allowance)
 
     def _rough_along(self, chain: Chain, top: int, allowance: int) -> Iterator[Pass]:
         """Passes parallel to Z, one pocket after the other.
@@ -179,7 +201,7 @@ class Planner:
             if is_open:
                 self.path.rapid_x(level)
             else:
-                self.path.rapid_x(height + self.retract)
+                self.path.sink(height + self.retract)
                 self.path.feed_x(level, self.cut.feed)
             self.path.feed_z(stretch.end, self.cut.feed)
             self.path.rapid_x(level + self.retract)
@@ -199,41 +221,44 @@ class Planner:
                 continue
             self.path.rise(top + self.retract)
             self.path.rapid_z(level)
+            self.path.sink(top + self.retract)
             self.path.feed_x(inner, self.cut.feed)
             self.path.rapid_z(level + self.retract)
             yield self._pass(Role.FACING, depth)
 
     def _along_contour(
-        self, record: ContourRecord, chain: Chain, top: int, allowance: int, is_open: bool
+        self, record: ContourRecord, chain: Chain, top: int, allowance: int
     ) -> Iterator[Pass]:
-        """The contour in one go: with the allowance, exactly, and as often again as wanted.
-
-        `is_open` tells that nothing higher than its start stands in front of it.
-        """
+        """The contour in one go: with the allowance, exactly, and as often again as wanted."""
+        begin = chain.z + self.retract
+        is_open = self.material.free_end(chain.x, begin) <= chain.z
         passes = [(Role.FINISHING, 0, self.cut.finish_feed)]
         if allowance > 0 and not chain.simple:
             passes.insert(0, (Role.SMOOTHING, allowance, self.cut.feed))
         passes += [(Role.SPRING, 0, self.cut.finish_feed)] * self.cut.kind
         for role, offset, feed in passes:
             self.path.rise(top + self.retract)
-            self.path.rapid_z(chain.z + self.retract if is_open else chain.z)
+            self.path.rapid_z(begin if is_open else chain.z)
             if is_open:
                 self.path.rapid_x(chain.x + offset)
                 self.path.feed_z(chain.z, feed)
             else:
+                self.path.sink(top + self.retract)
                 self.path.feed_x(chain.x + offset, feed)
             self.path.follow(record.segments, feed)
-            self.path.rise(top + self.retract)
+            self.path.rapid_x(top + self.retract)
             yield self._pass(role, offset)
 
     def _plunge(self, record: PlungeRecord, chain: Chain) -> Iterator[Pass]:
         """Straight in, side by side, each place with its pecks."""
         top = self.material.highest(chain.z, chain.z_end, self.tool.below)
+        if top <= record.x:
+            return
         peck = self.cut.peck
         for place in plunge_places(record.z_high, record.z_low, self.tool.width):
             self.path.rise(top + self.retract)
             self.path.rapid_z(place)
-            self.path.rapid_x(top + self.retract)
+            self.path.sink(top + self.retract)
             depth = top
             while True:
                 depth = max(record.x, depth - peck) if peck else record.x

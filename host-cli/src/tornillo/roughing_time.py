@@ -8,7 +8,7 @@ from tornillo.image import PartImage, Record
 from tornillo.material import contour_chain
 from tornillo.moves import Plan
 from tornillo.planning import Planner
-from tornillo.protocol import CONTOUR_FACING, ContourRecord, ImageHeader
+from tornillo.protocol import CONTOUR_FACING, POSITION_MAX, ContourRecord, ImageHeader
 from tornillo.timing import time_plan
 
 
@@ -27,6 +27,8 @@ def facing_is_shorter(
         return True
     if any(sub.xe < sub.xs for sub in chain.subs):
         return False
+    if max(header.stock_front, header.stock_radius) > POSITION_MAX:
+        return False  # will be refused
     before = PartImage(header, tuple(records))
     facing = contour._replace(kind=contour.kind | CONTOUR_FACING)
     along = contour._replace(kind=contour.kind & ~CONTOUR_FACING)
@@ -38,9 +40,6 @@ def _seconds(before: PartImage, contour: ContourRecord) -> float:
     header = before.header
     clear = header.stock_front + header.retract, header.stock_radius + header.retract
     planner = Planner(before, clear)
-    for record in before.records:
-        for _ in planner.record(record):
-            pass
-    planner.path.stand(*clear)
+    planner.suppose(before.records)
     passes = tuple(planner.record(contour))
     return time_plan(Plan(before, passes), Drives.default()).total

@@ -47,6 +47,11 @@ class Toolpath:
         if not self._first and self.x < x:
             self.rapid_x(x)
 
+    def sink(self, x: int) -> None:
+        """X inwards to `x` through air, unless it is farther in already."""
+        if self.x > x:
+            self.rapid_x(x)
+
     def rapid_z(self, z: int) -> None:
         """Z through air; the first time in an operation outside the stock.
 

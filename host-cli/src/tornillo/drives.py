@@ -16,7 +16,7 @@ from tornillo.moves import Move
 from tornillo.protocol import FEED_UNIT, SETTINGS, SettingId
 
 #: Segments that the chip looks ahead over, behind the one that is being made.
-AHEAD = 16
+AHEAD = 14
 UNIT, TANGENT, BACK = 128, 2, 144
 NO_LIMIT = 0xFFFF
 #: Dead steps are taken up before the turning point of an arc in so many entries at most.

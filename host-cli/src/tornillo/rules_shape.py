@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from math import atan, degrees, isqrt
 from typing import NamedTuple
 
-from tornillo.image import Segment, SegmentKind, unpack_segments
+from tornillo.image import CENTRE_UNIT, Segment, SegmentKind, unpack_segments
 from tornillo.material import (
     Chain,
     Material,
@@ -31,7 +31,10 @@ from tornillo.units import Scale
 
 CONTOUR_KIND_MAX = 4
 PLUNGE_KIND_MAX = 1
-RADIUS_MIN = 2
+#: By how many steps an arc may end beside its circle, before the motion looks closer.
+MISSED_MAX = 2
+#: Two steps, in 1/256 step and a little less.
+MOTION_RADIUS_MIN = 504
 
 
 class Found(NamedTuple):
@@ -166,16 +169,28 @@ def _segment_rules(
 def arc_exists(segment: Segment) -> bool:
     """Whether an arc leads from its start to its end in whole steps, without running back."""
     crz, crx = rounded_centre(segment)
-    square = crz * crz + crx * crx
-    radius = isqrt(square)
+    radius = isqrt(crz * crz + crx * crx)
     ez, ex = segment.dz - crz, segment.dx - crx
-    if not RADIUS_MIN <= radius <= RADIUS_MAX:
+    convex = segment.kind is SegmentKind.CONVEX
+    if not (crx <= 0 <= ex if convex else ex <= 0 <= crx):
         return False
-    if abs(ez * ez + ex * ex - square) > 2 * radius:
+    if radius > RADIUS_MAX or abs(isqrt(ez * ez + ex * ex) - radius) > MISSED_MAX:
         return False
-    if segment.kind is SegmentKind.CONVEX:
-        return crx <= 0 <= ex
-    return ex <= 0 <= crx
+    return motion_takes(segment)
+
+
+def motion_takes(segment: Segment) -> bool:
+    """Whether the chip's motion makes an arc: the rule of firmware/motion/arc.c, to the bit.
+
+    Its numbers are 1/256 steps, shifted right until the larger one fits 16 bits.
+    """
+    p, m = abs(segment.cx), abs(segment.cz)
+    off = segment.dz * (CENTRE_UNIT * segment.dz - 2 * segment.cz)
+    off += segment.dx * (CENTRE_UNIT * segment.dx - 2 * segment.cx)
+    shift = max(0, max(p, m).bit_length() - 16)
+    root = isqrt(((p >> shift) ** 2 >> 1) + ((m >> shift) ** 2 >> 1))
+    radius = root * 181 >> 7
+    return abs(off) >> 1 >> shift <= radius and (shift > 0 or radius >= MOTION_RADIUS_MIN)
 
 
 def slopes(segment: Segment) -> Iterator[tuple[bool, int, int]]:

@@ -41,6 +41,15 @@ virtual-lathe: firmware virtual-lathe-library ## run a virtual lathe; options in
 test: firmware virtual-lathe-library ## all tests: host, firmware on the simulated chip, end to end
 	@$(PYTHON) -m pytest --cov=tornillo --cov-branch --cov-report=term $(PYTEST_ARGS)
 
+.PHONY: test-kernel
+test-kernel: firmware virtual-lathe-library ## cut a part through the USB driver of a real Linux kernel
+	@tests/kernel/setup.sh $(CACHE)
+	@TORNILLO_REFRESH_DESCRIPTORS=$(REFRESH) $(PYTHON) -m pytest tests/kernel/check_linux.py
+
+.PHONY: fuzz
+fuzz: firmware virtual-lathe-library ## a million USB transfers and frames of nonsense, some minutes
+	@$(PYTHON) -m fuzz.fuzz $(ARGS)
+
 .PHONY: lint
 lint: firmware ## cppcheck, clang-format, ruff, mypy, generated files up to date
 	@tests/lint/lint.sh $(VENV)

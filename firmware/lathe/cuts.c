@@ -10,6 +10,7 @@
 #include "store/flash.h"   /* reading numbers */
 
 #define FARTHEST 32767
+#define NOWHERE (-32767 - 1)
 
 uint8_t cuts_kind;
 int16_t cuts_height;
@@ -214,10 +215,13 @@ static uint8_t next_stretch(void)
         if (stretch_at(level) && contour_contains) {
             done = contour_e; /* it has been cut before its pockets */
         }
-        if (level == 1 || (stretch_at(level - 1) && contour_contains)) {
-            if (stretch_at(level)) {
-                return 1;
-            }
+        last_e = NOWHERE;
+        contour_contains = 1;
+        if (level != 1 && stretch_at(level - 1)) {
+            last_e = contour_e;
+        }
+        if (contour_contains && stretch_at(level) && contour_s > last_e) {
+            return 1;
         }
         level--;
     }

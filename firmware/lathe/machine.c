@@ -14,6 +14,7 @@
 #include "motion/ramp.h"      /* hold */
 #include "motion/stream.h"    /* freeze, positions */
 #include "panel/inputs.h"     /* buttons */
+#include "panel/led.h"        /* number of the selected part */
 #include "store/parts.h"      /* selected part */
 #include "store/settings.h"   /* settings */
 #include "tick.h"             /* idle time */
@@ -290,7 +291,11 @@ static void serve_buttons(void)
             machine_stop();
         }
     } else if (presses & INPUT_HOLD) {
-        machine_hold();
+        if (machine_state == STATE_IDLE) {
+            led_show(parts_select_next());
+        } else {
+            machine_hold();
+        }
     } else if (presses & INPUT_RUN) {
         if (machine_state == STATE_HOLD || machine_state == STATE_PAUSE) {
             machine_resume();

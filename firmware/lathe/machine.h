@@ -4,15 +4,19 @@
  * SPDX-License-Identifier: Apache-2.0
  *
  *   state     RUN          HOLD    STOP           part/homing ends  trip
- *   IDLE      home, or     -       -              -                 ALARM
+ *   IDLE      home, or     select  -              -                 ALARM
  *             start part
  *   HOMING    -            -       ALARM          IDLE, homed       ALARM
- *   RUNNING   -            HOLD    IDLE           IDLE              ALARM
+ *   RUNNING   -            HOLD    IDLE           IDLE or PAUSE     ALARM
  *   HOLD      RUNNING      -       IDLE           -                 ALARM
+ *   PAUSE     RUNNING      -       IDLE           -                 ALARM
  *   ALARM     -            -       IDLE           -                 ALARM
  *
  * RUN and STOP are buttons; the commands HOME, RUN and RESUME are the three
- * meanings of the first, STOP and RESET those of the second. A trip is the
+ * meanings of the first, STOP and RESET those of the second. HOLD in IDLE
+ * selects the next part; the LED flashes its number. In PAUSE the slides are
+ * parked and the part waits for a person: a message, another tool, or the end
+ * of an operation when it is run step by step. A trip is the
  * emergency stop, a limit switch while homed, or a step stream that ran dry;
  * it makes the position untrusted. ALARM ends by the command RESET or the
  * STOP button, when its cause is gone; then IDLE, not homed. Acknowledging

@@ -289,6 +289,12 @@
 #define SETTING_SET_RESPONSE_SIZE           1
 #define SETTING_SET_ID_AT                   0
 #define SETTING_SET_VALUE_AT                1
+/* Give the chip another serial number, stored in EEPROM before the answer.
+ * HELLO shows it at once, USB from the next connection on. */
+#define COMMAND_SERIAL_SET                  0x22
+#define SERIAL_SET_REQUEST_SIZE             8
+#define SERIAL_SET_RESPONSE_SIZE            1
+#define SERIAL_SET_SERIAL_AT                0
 
 /* Part image: header, then one record per operation. */
 #define PART_IMAGE_FORMAT                   2
@@ -425,7 +431,8 @@
 #define REFUSAL_BACK_EDGE                   20
 /* a segment rises more steeply than front of the tool */
 #define REFUSAL_FRONT_EDGE                  21
-/* dz above 0, or x gets smaller in a contour roughed in facing direction */
+/* dz above 0, or x gets smaller somewhere in a contour roughed in facing
+ * direction */
 #define REFUSAL_DIRECTION                   22
 /* spindle is neither 0 nor between the settings spindle_min and spindle_max */
 #define REFUSAL_SPINDLE                     23

@@ -15,16 +15,26 @@
 static uint8_t started; /* the start-up light is over */
 static uint16_t code_began;
 
-static uint8_t alarm_lit(uint16_t now)
+static uint8_t number; /* to be flashed once */
+
+void led_show(uint8_t flashes)
+{
+    number = flashes;
+    code_began = tick_now();
+}
+
+/* So many flashes and a pause, again and again. */
+static uint8_t code_lit(uint16_t now, uint8_t flashes)
 {
     uint16_t elapsed = now - code_began;
     uint8_t half = (uint8_t)(elapsed / (FLASH_MS / 2));
     uint8_t flash = half >> 1;
 
-    if (flash >= machine_alarm + PAUSE_FLASHES) {
+    if (flash >= flashes + PAUSE_FLASHES) {
         code_began = now;
+        number = 0;
     }
-    return flash < machine_alarm && !(half & 1);
+    return flash < flashes && !(half & 1);
 }
 
 void led_poll(void)
@@ -38,13 +48,18 @@ void led_poll(void)
         started = 1;
         switch (machine_state) {
         case STATE_IDLE:
+            if (number != 0) {
+                lit = code_lit(now, number);
+                break;
+            }
             lit = machine_homed || (now & 0x200);
             break;
         case STATE_HOLD:
+        case STATE_PAUSE:
             lit = (now & 0x80) != 0;
             break;
         case STATE_ALARM:
-            lit = alarm_lit(now);
+            lit = code_lit(now, machine_alarm);
             break;
         default:
             lit = (now & 0x1C0) != 0;

@@ -129,6 +129,30 @@ uint8_t parts_select(uint8_t slot)
     return ERROR_OK;
 }
 
+uint8_t parts_select_next(void)
+{
+    uint8_t selected = parts_selected();
+    uint8_t number = 0;
+    uint8_t slot;
+
+    if (selected == SLOT_NONE) {
+        return 0;
+    }
+    for (slot = 0; slot < PART_SLOTS; slot++) {
+        if (parts_present(slot)) {
+            number++;
+            if (slot > selected) {
+                parts_select(slot);
+                return number;
+            }
+        }
+    }
+    for (slot = 0; !parts_present(slot); slot++) {
+    }
+    parts_select(slot);
+    return 1;
+}
+
 /* Reads the name of the image in a slot into parts_name. */
 void parts_read_name(uint8_t slot)
 {

@@ -31,6 +31,10 @@ uint8_t parts_selected(void);
 /* Chooses it; remembered without power. */
 uint8_t parts_select(uint8_t slot);
 
+/* Chooses the part behind the selected one, the first behind the last.
+   Returns its number in the order of the slots, from 1; 0 without a part. */
+uint8_t parts_select_next(void);
+
 /* True when the slot holds a part; its header is then in the variables
    below, until the next call into this room. */
 uint8_t parts_present(uint8_t slot);

@@ -72,6 +72,10 @@ void usb_tick(void);
 #define USB_SERIAL_CHARACTER(i) (usb_serial_descriptor[2 + 2 * (i)])
 extern volatile uint8_t usb_serial_descriptor[18];
 
+/* Reads it from EEPROM anew, after it was changed there. Main loop. A host that
+ * asks at that very moment may see half of it. */
+void usb_read_serial_number(void);
+
 /* ---- Receiving (main loop) ---------------------------------------------- */
 
 /* The last packet from the host; belongs to the main loop from the moment

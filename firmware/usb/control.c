@@ -151,7 +151,7 @@ void control_out(void)
         }
         usb_copy(usb_line_coding, usb_ep0_out, LINE_CODING_LENGTH);
         send_status();
-    } else {
+    } else if (usb_stage == STAGE_DATA_IN) {
         /* The status stage of a read, perhaps before all data were sent. */
         usb_stage = STAGE_IDLE;
     }

@@ -21,8 +21,6 @@
 #include "sfr.h"
 #include "usb/usb_config.h"
 
-#define TYPE_STRING 3
-
 /* The engine off and everything as after power-on. */
 static void detach(void)
 {
@@ -46,41 +44,10 @@ static void attach(void)
     UCON = UCON_USBEN;
 }
 
-/* 1 = `character` may stand in a serial number; Windows refuses a comma. */
-static uint8_t is_serial_character(uint8_t character)
-{
-    return character > 0x20 && character < 0x7F && character != ',';
-}
-
-static void read_serial_number(void)
-{
-    uint8_t i;
-    uint8_t valid = 1;
-
-    usb_serial_descriptor[0] = USB_SERIAL_DESCRIPTOR_LENGTH;
-    usb_serial_descriptor[1] = TYPE_STRING;
-    EECON1 = 0; /* data EEPROM */
-    for (i = 2; i < USB_SERIAL_DESCRIPTOR_LENGTH; i += 2) {
-        EEADR = USB_SERIAL_EEPROM_ADDRESS - 1 + (i >> 1);
-        EECON1 = 1; /* RD: the byte is there in the next cycle */
-        usb_serial_descriptor[i] = EEDATA;
-        usb_serial_descriptor[i + 1] = 0;
-        if (!is_serial_character(EEDATA)) {
-            valid = 0;
-        }
-    }
-    if (valid) {
-        return;
-    }
-    for (i = 2; i < USB_SERIAL_DESCRIPTOR_LENGTH; i += 2) {
-        usb_serial_descriptor[i] = '0';
-    }
-}
-
 void usb_init(void)
 {
     UCON = 0;
-    read_serial_number();
+    usb_read_serial_number();
     usb_set_up_descriptors();
     usb_received = 0;
     detach();

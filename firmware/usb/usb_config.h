@@ -19,11 +19,10 @@
 /* Release of the device as binary coded decimal: 0x0100 is 1.00. */
 #define USB_DEVICE_RELEASE_BCD 0x0100
 
-/* The serial number: 8 characters of ASCII in the data EEPROM from this
- * address. A character that hosts refuse (blank EEPROM, space, comma, anything
- * outside 0x21..0x7E) makes it "00000000" as a whole.
+/* The serial number: 8 characters of ASCII in the data EEPROM, see
+ * serial_number.asm. A character that hosts refuse (blank EEPROM, space, comma,
+ * anything outside 0x21..0x7E) reads as "0". The command SERIAL_SET changes it.
  */
-#define USB_SERIAL_EEPROM_ADDRESS 0xF0
 
 /* ---- Power --------------------------------------------------------------
  * USB_SELF_POWERED: 1 = the lathe runs from a supply of its own, whether a
@@ -38,8 +37,12 @@
  * from VBUS. A self-powered board may draw less than it declares, so one
  * number serves both.
  */
+#ifndef USB_SELF_POWERED
 #define USB_SELF_POWERED 1
+#endif
+#ifndef USB_BUS_CURRENT_MA
 #define USB_BUS_CURRENT_MA 100
+#endif
 
 /* ---- VBUS sense ---------------------------------------------------------
  * Pin that is high while the cable carries power. With the pin left open the
@@ -70,9 +73,6 @@
 #endif
 #if USB_DETACH_MS < 1 || USB_DETACH_MS > 255
 #error "USB_DETACH_MS: 1..255"
-#endif
-#if USB_SERIAL_EEPROM_ADDRESS > 0x100 - SERIAL_LENGTH
-#error "USB_SERIAL_EEPROM_ADDRESS: the serial number leaves the EEPROM"
 #endif
 
 #endif

@@ -5,6 +5,7 @@ Both come from a seed alone, so that host and chip can be compared on thousands 
 failure can be repeated by its number.
 """
 
+import itertools
 import math
 import random
 from collections.abc import Callable
@@ -49,7 +50,8 @@ class Draft:
         self.head()
         if self.allowance or rng.random() < 0.1:
             self.operation("face", f"z = {n(0.0)}")
-        rng.choice([self.chain, self.chain, self.profile, self.profile, self.neck])()
+        shapes = [self.chain, self.profile, self.neck]
+        rng.choice([*shapes, *shapes, self.stairs, self.crowd])()
         if rng.random() < 0.3:
             self.groove()
         if rng.random() < 0.15:
@@ -150,15 +152,26 @@ class Draft:
             bent.append((z, min(fallen, self.diameter / 2)))
         self.points(bent)
 
-    def points(self, places: list[Place]) -> None:
-        """Write a profile through places."""
+    def stairs(self) -> None:
+        """Many cylinders, the last ones thickest."""
+        n = self.n
+        places = self.rising(self.rng.randint(20, 58))
+        for (front, _), (back, radius) in itertools.pairwise(places):
+            self.operation("cylinder", f"z = [{n(front)}, {n(back)}]\ndiameter = {n(2 * radius)}")
+
+    def crowd(self) -> None:
+        """A profile of many lines, for long images."""
+        self.points(self.rising(self.rng.randint(50, 250)), plain=True)
+
+    def points(self, places: list[Place], plain: bool = False) -> None:
+        """Write a profile through places, `plain` without arcs and corners."""
         rng, n = self.rng, self.n
         rows = []
         for number, place in enumerate(places):
             more = ""
-            if number and rng.random() < 0.3:
+            if number and not plain and rng.random() < 0.3:
                 more += f", radius = {n(self.radius(places[number - 1], place))}"
-            if 0 < number < len(places) - 1 and rng.random() < 0.3:
+            if not plain and 0 < number < len(places) - 1 and rng.random() < 0.3:
                 more += f", {rng.choice(['corner', 'chamfer'])} = {n(rng.uniform(0.1, 1.0))}"
             rows.append(f"  {self.at(place, more)},")
         self.operation("profile", "points = [\n" + "\n".join(rows) + "\n]")
@@ -239,6 +252,9 @@ def _records(image: bytearray) -> list[tuple[int, int]]:
 def _swap(rng: random.Random, image: bytearray) -> None:
     """Two neighbouring records the other way round, or one of them twice or not at all."""
     records = _records(image)
+    if not records:
+        _flip(rng, image)
+        return
     at, size = rng.choice(records)
     what = rng.randrange(3)
     record = bytes(image[at : at + size])

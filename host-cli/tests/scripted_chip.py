@@ -81,6 +81,7 @@ class ScriptedChip:
         self.status = IDLE
         self.coming: list[StatusData] = []
         self.protocol = PROTOCOL_VERSION
+        self.serial = b"T0000001"
         self.refusals: dict[Command, bytes] = {}
         self.wrong_crc = False
         self.executed: list[Command] = []
@@ -116,7 +117,7 @@ class ScriptedChip:
             *(v[SettingId.STEP_X_NM], v[SettingId.STEP_Z_NM]),
             *(v[SettingId.TRAVEL_X], v[SettingId.TRAVEL_Z]),
             *(v[SettingId.ZERO_X], v[SettingId.ZERO_Z]),
-            b"T0000001",
+            self.serial,
             min(v[SettingId.RAPID_RATE_X], v[SettingId.RAPID_RATE_Z]),
         )
 
@@ -264,6 +265,11 @@ class ScriptedChip:
         """SETTING_SET."""
         number, value = Struct("<Bi").unpack(payload)
         self.values[SettingId(number)] = value
+        return b""
+
+    def do_serial_set(self, payload: bytes) -> bytes:
+        """SERIAL_SET."""
+        self.serial = payload
         return b""
 
 

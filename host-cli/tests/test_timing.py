@@ -8,7 +8,7 @@ from tornillo.drives import Drives, LegPlanner
 from tornillo.machine import Machine
 from tornillo.moves import Move
 from tornillo.planning import plan_part
-from tornillo.roughing import facing_is_shorter
+from tornillo.roughing_time import facing_is_shorter
 from tornillo.timing import BEGIN_S, REST_S, axis_steps, move_times, time_plan
 
 DRIVES = Drives(rapid_x=1_000, rapid_z=1_000, start_x=400, start_z=400, acceleration=8_000)

@@ -7,6 +7,7 @@ import platform
 import sys
 from pathlib import Path
 
+from link_figures import link_figures
 from measure import BenchError, Figures, command_line, cut_test_bar, sizes
 from motion_figures import motion_figures
 from page import fill
@@ -27,6 +28,7 @@ def figures() -> Figures:
         **sizes(),
         **command_line(),
         **bar,
+        **link_figures(),
         **motion,
         "isr_worst_cycles": worst,
     }

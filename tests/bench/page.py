@@ -54,6 +54,16 @@ def rows(found: Figures) -> list[Row]:
         ),
         ("homing both axes, dead steps measured three times", f"{found['homing_s']:.1f} s", ""),
         ("upload of the test bar, checked and verified", f"{found['upload_s']:.2f} s", ""),
+        (
+            f"upload of 30 operations, {found['upload_30_ops_bytes']} bytes, and reading them back",
+            f"{found['upload_30_ops_s']:.2f} s",
+            "",
+        ),
+        (
+            "frames of full length, each answered, bytes a second to the chip",
+            f"{found['link_bytes_per_s']:,}",
+            "",
+        ),
         ("test bar, RUN to parked, 4 passes", f"{found['test_bar_s']:.1f} s", ""),
         *(
             (

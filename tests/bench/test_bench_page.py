@@ -15,6 +15,9 @@ FOUND = {
     "sim_realtime_factor": 2.5,
     "sim_realtime_factor_idle": 5.0,
     "upload_s": 0.02,
+    "upload_30_ops_s": 0.512,
+    "upload_30_ops_bytes": 296,
+    "link_bytes_per_s": 56_789,
     "homing_s": 5.5,
     "test_bar_s": 63.2,
     "step_jitter_max_cycles": 3,
@@ -42,5 +45,6 @@ def test_figures_stand_beside_those_of_the_peer_with_their_units() -> None:
     assert "| RAM, static and worst stack | 1,000 of 2,048 bytes |" in page
     assert "| step interrupt, worst | 96 cycles (8.0 us) |" in page
     assert "| test bar, error of the feed | -0.0044 % |" in page
+    assert "| upload of 30 operations, 296 bytes, and reading them back | 0.51 s |" in page
     assert "| 37.20 s, 39.10 s | 39.46 s |" in page
     assert "| test bar, diameter | 15.234 mm, error -1 steps |  |" in page

@@ -20,10 +20,11 @@ from lathe_process import LatheError, LatheProcess
 from picture import draw
 from rich.console import Console
 from rich.table import Table
-from tornillo import Lathe, Machine, Part, TornilloError
+from tornillo import Lathe, Part, TornilloError
 from tornillo.commands.following import follow_run
+from tornillo.outline import outline
 from tornillo.protocol import State
-from tornillo.shape import finished
+from tornillo.units import NM_PER_UNIT
 from verdict import DeadSteps, faults, table
 from virtual_lathe import decode_vcd
 
@@ -95,12 +96,14 @@ def decode(report: dict[str, Any]) -> int:
     return sum(a != b for a, b in zip(pins, metal, strict=False)) + abs(len(pins) - len(metal))
 
 
-def outline(machine: Machine) -> list[tuple[float, float]]:
+def wanted() -> list[tuple[float, float]]:
     """The finished part as (z, diameter) in mm, from the free end to the chuck."""
+    part = Part.load(PART)
+    unit = NM_PER_UNIT[part.units] / NM_PER_MM
     return [
-        (z * machine.step_z_nm / NM_PER_MM, 2 * section.radius * machine.step_x_nm / NM_PER_MM)
-        for section in finished(Part.load(PART).steps(machine))
-        for z in (section.z_front, section.z_back)
+        (place.z * unit, 2 * place.x * unit)
+        for piece in outline(part)
+        for place in (piece.start, piece.end)
     ]
 
 
@@ -142,7 +145,7 @@ def story() -> list[str]:
     show(report)
     say("6. What the motor pins alone tell")
     differ = decode(report)
-    draw(OUT / "part.png", report, outline(Machine.load()))
+    draw(OUT / "part.png", report, wanted())
     return faults(report, measured, SCREWS, differ)
 
 

@@ -67,7 +67,9 @@ class Workshop:
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
         assert self._lathe.stdout is not None
-        assert self._lathe.stdout.readline() == f"port: {self.port}\n"
+        #: The first line of the virtual lathe: where its port is.
+        self.announced = self._lathe.stdout.readline().strip()
+        assert self.announced.startswith(("port: ", "usbip: "))
 
     def __enter__(self) -> Workshop:
         """Return the workshop."""

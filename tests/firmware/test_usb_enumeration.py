@@ -10,7 +10,7 @@ import importlib
 
 import pytest
 from simulated.processes import on_a_new_chip
-from tornillo.protocol import USB_PRODUCT_ID, USB_VENDOR_ID
+from tornillo.protocol import USB_PRODUCT_ID, USB_VENDOR_ID, Command, ErrorCode
 
 from firmware.usb_bench import CYCLES_PER_MS, UsbBench
 
@@ -101,14 +101,32 @@ def test_strings_are_understood_by_another_parser() -> None:
 
 
 @pytest.mark.parametrize(
-    "stored",
-    [b"\xff" * 8, b"\0" * 8, b"TN,00042", b"TN 00042", b"TN0004\xff\xff"],
-    ids=["blank", "zero", "comma", "space", "too short"],
+    ("stored", "shown"),
+    [
+        pytest.param(b"\xff" * 8, "00000000", id="blank"),
+        pytest.param(b"\0" * 8, "00000000", id="zero"),
+        pytest.param(b"TN,00042", "TN000042", id="comma"),
+        pytest.param(b"TN 00042", "TN000042", id="space"),
+        pytest.param(b"TN0004\xff\xff", "TN000400", id="too short"),
+        pytest.param(b"!~\x7f\x20AZaz", "!~00AZaz", id="ends of the range"),
+    ],
 )
 @on_a_new_chip
-def test_a_serial_number_that_hosts_refuse_reads_as_zeros(stored: bytes) -> None:
+def test_a_character_that_hosts_refuse_reads_as_0(stored: bytes, shown: str) -> None:
     bench = UsbBench(stored).enumerate()
-    assert bench.host.description.strings[3] == "00000000"
+    assert bench.host.description.strings[3] == shown
+
+
+@on_a_new_chip
+def test_the_serial_number_is_set_shown_at_once_and_kept() -> None:
+    bench = UsbBench().open()
+    assert bench.ask(1, Command.SERIAL_SET, b"TN-00042") == bytes([ErrorCode.OK])
+    assert b"TN-00042" in bench.ask(0, Command.HELLO)
+    assert bench.enumerate().host.description.strings[3] == "TN-00042"
+    assert bench.chip.save().eeprom[0xF0:0xF8] == b"TN-00042"
+    bench.open()
+    for wrong in (b"", b"TN-0042", b"TN-000042"):
+        assert bench.ask(2, Command.SERIAL_SET, wrong) == bytes([ErrorCode.BAD_LENGTH])
 
 
 @on_a_new_chip

@@ -346,6 +346,12 @@ class Chip:
             RamWrite(int(e.cycle), int(e.address), int(e.value), int(e.pc)) for e in entries[:count]
         ]
 
+    def written(self) -> set[int]:
+        """Addresses of watched RAM that have been written since they are watched, all of them."""
+        flags = (ctypes.c_uint8 * 0x1000)()
+        self._native.vl_written(flags)
+        return {address for address, flag in enumerate(flags) if flag}
+
     def open_vcd(self, path: Path | str) -> None:
         """Begin a value change dump of all pins, timescale 1 ns.
 

@@ -22,12 +22,13 @@ from functools import partial
 from pathlib import Path
 from types import FrameType
 
-from .chip import EEPROM_BYTES, FLASH_BYTES, NonVolatile
+from .chip import CYCLES_PER_SECOND, EEPROM_BYTES, FLASH_BYTES, NonVolatile
 from .lathe import BUTTONS, DEFAULT_FIRMWARE, Options, VirtualLathe
 from .machine import AxisName
 from .motor import PULL_IN
 from .terminal import Terminal
 from .usb_host import UsbError
+from .usbip import BUS_ID, Exporter
 
 ACTIONS = (*BUTTONS, "estop", "release", "plug", "unplug")
 SLICE_S = 0.005
@@ -42,6 +43,13 @@ def _timed(text: str) -> tuple[str, float]:
             f"{text!r}: write BUTTON@SECONDS with one of {', '.join(ACTIONS)}"
         )
     return name, float(seconds)
+
+
+def _listen_address(text: str) -> tuple[str, int]:
+    name, _, port = text.rpartition(":")
+    if not name or not port.isdecimal() or int(port) > 0xFFFF:
+        raise argparse.ArgumentTypeError(f"{text!r}: write ADDRESS:PORT, like 127.0.0.1:3240")
+    return name, int(port)
 
 
 def _nose_radius(text: str) -> float:
@@ -78,6 +86,13 @@ def build_parser() -> argparse.ArgumentParser:
     add("--plug", type=float, action="append", default=[], metavar="T")
     add("--no-usb", action="store_true", help="the cable is never put in")
     add("--port-link", type=Path, metavar="PATH")
+    add(
+        "--usbip",
+        type=_listen_address,
+        metavar="ADDRESS:PORT",
+        help="export the device over USB/IP in place of a port; attach it with "
+        f"`usbip attach -r ADDRESS -b {BUS_ID}`",
+    )
     add("--vcd", type=Path, metavar="FILE", help="trace of all pins for GTKWave")
     add("--report", type=Path, metavar="FILE")
     add("--eeprom-file", type=Path, metavar="FILE", help="keeps flash and EEPROM between runs")
@@ -133,6 +148,11 @@ class Session:
         if arguments.vcd:
             self.lathe.chip.open_vcd(arguments.vcd)
         self.terminal = Terminal(self.lathe.host, arguments.port_link)
+        self.exporter = (
+            Exporter(self.lathe.host, arguments.usbip, self.lathe.run_to)
+            if arguments.usbip
+            else None
+        )
         self.stopped = False
         self.enumerate_wanted = False
         self._stdin_open = not sys.stdin.closed
@@ -173,13 +193,11 @@ class Session:
 
     def run(self) -> None:
         """Run until the time is up or somebody ends it."""
-        print(f"port: {self.arguments.port_link or self.terminal.name}", flush=True)
+        print(self._port_line(), flush=True)
         wall_start, next_state = time.monotonic(), time.monotonic() + STATE_EVERY_S
         limit = self.arguments.seconds
         while not self.stopped and (limit is None or self.lathe.seconds < limit):
-            self._connect()
-            self.lathe.run(SLICE_S)
-            self.terminal.exchange()
+            self._let_time_pass()
             self._listen()
             if time.monotonic() >= next_state:
                 next_state += STATE_EVERY_S
@@ -188,6 +206,20 @@ class Session:
                 ahead = self.lathe.seconds - (time.monotonic() - wall_start)
                 if ahead > 0:
                     time.sleep(ahead)
+
+    def _port_line(self) -> str:
+        if self.exporter is not None and self.arguments.usbip is not None:
+            return f"usbip: {self.arguments.usbip[0]}:{self.exporter.port} {BUS_ID}"
+        return f"port: {self.arguments.port_link or self.terminal.name}"
+
+    def _let_time_pass(self) -> None:
+        if self.exporter is not None:
+            chip = self.lathe.chip
+            self.exporter.run(chip.cycle + round(SLICE_S * CYCLES_PER_SECOND))
+            return
+        self._connect()
+        self.lathe.run(SLICE_S)
+        self.terminal.exchange()
 
     def _connect(self) -> None:
         host = self.lathe.host
@@ -235,6 +267,8 @@ class Session:
         """Write the report and what must survive."""
         self.lathe.chip.close_vcd()
         self.terminal.close()
+        if self.exporter is not None:
+            self.exporter.close()
         if self.arguments.report:
             text = json.dumps(self.lathe.report(), indent=1)
             self.arguments.report.write_text(text + "\n", encoding="utf-8")

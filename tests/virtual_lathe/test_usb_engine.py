@@ -1,61 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The model of the serial interface engine, with the test in the place of the firmware.
-
-``Hand`` writes registers and descriptors as instructions would; the host makes transactions.
-"""
+"""The model of the serial interface engine, with the test in the place of the firmware."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from virtual_lathe.chip import Chip
-from virtual_lathe.usb_host import Handshake, Token, UsbHost
+from virtual_lathe.engine_hand import (
+    ACTVIF,
+    BSTALL,
+    DTS,
+    DTSEN,
+    GET_DEVICE,
+    IDLEIF,
+    PIR2,
+    PKTDIS,
+    STALLIF,
+    SUSPND,
+    TRNIF,
+    UADDR,
+    UCON,
+    UEP0,
+    UIR,
+    UOWN,
+    URSTIF,
+    USBIF,
+    Hand,
+)
+from virtual_lathe.usb_host import Handshake, Token
 from virtual_lathe.worker import in_new_process
 
 Program = Callable[[str], str]
-UIR, UIE, USTAT, UCON, UADDR, UCFG, UEP0 = 0xF68, 0xF69, 0xF6C, 0xF6D, 0xF6E, 0xF6F, 0xF70
-PIR2, USBIF = 0xFA1, 0x20
-TRNIF, STALLIF, IDLEIF, URSTIF, ACTVIF, PKTDIS, SUSPND = 0x08, 0x20, 0x10, 0x01, 0x04, 0x10, 0x02
-UOWN, DTS, DTSEN, BSTALL = 0x80, 0x40, 0x08, 0x04
-GET_DEVICE = bytes((0x80, 6, 0, 1, 0, 0, 8, 0))
-SET_ADDRESS_7 = bytes((0x00, 5, 7, 0, 0, 0, 0, 0))
-
-
-class Hand:
-    """A chip whose firmware is the test, attached, reset and with endpoint 0 and 2 on."""
-
-    def __init__(self, firmware: str, ping_pong: int = 0) -> None:
-        """Attach, plug in and reset."""
-        self.chip = Chip(firmware)
-        self.host = UsbHost(self.chip)
-        self.chip.run(1e-4)
-        self.chip.write(UCFG, 0x14 | ping_pong)
-        self.chip.write(UEP0, 0x16)
-        self.chip.write(UEP0 + 2, 0x1E)
-        self.chip.write(UIE, 0xFF)
-        self.chip.write(UCON, 0x08)
-        self.host.plug()
-        self.host.reset_bus()
-        self.chip.write(UIR, 0)
-
-    def arm(self, endpoint: int, into: bool, address: int, count: int, stat: int) -> None:
-        """Hand a descriptor to the engine, status byte last."""
-        at = 0x400 + 8 * endpoint + 4 * into
-        self.chip.write(at + 1, count)
-        self.chip.write(at + 2, address & 0xFF)
-        self.chip.write(at + 3, address >> 8)
-        self.chip.write(at, stat | UOWN)
-
-    def take_status(self) -> int:
-        """Read USTAT and clear TRNIF."""
-        status = self.chip.read(USTAT)
-        self.chip.write(UIR, self.chip.peek(UIR) & ~TRNIF)
-        self.chip.run(1e-6)
-        return status
-
-    def flag(self, bit: int) -> bool:
-        """Whether a flag of UIR is set."""
-        return bool(self.chip.peek(UIR) & bit)
 
 
 def _setup_packet(firmware: str) -> list[object]:
@@ -196,41 +170,3 @@ def _idle_and_resume(firmware: str) -> list[object]:
 
 def test_idle_resume_and_reset_are_noticed(program: Program) -> None:
     assert in_new_process(_idle_and_resume, program("spin")) == [False, True, True, True, 0]
-
-
-def _mistakes(firmware: str) -> list[str]:
-    hand = Hand(firmware)
-    hand.chip.read(USTAT)
-    hand.arm(2, True, 0x440, 8, DTSEN)
-    hand.chip.write(0x442, 1)
-    hand.chip.write(0x414, 0)
-    hand.arm(2, False, 0x3F0, 64, DTSEN)
-    hand.chip.write(0x410, 0)
-    hand.arm(0, False, 0x420, 16, DTSEN)
-    hand.host.setup(SET_ADDRESS_7)
-    hand.chip.write(UADDR, 7)
-    hand.chip.write(UCFG, 0x15)
-    return [text.split(": ", 1)[1] for text in hand.host.mistakes]
-
-
-def test_mistakes_of_the_firmware_are_listed(program: Program) -> None:
-    found = in_new_process(_mistakes, program("spin"))
-    expected = (
-        "USTAT read without TRNIF",
-        "0x442 written while the engine owns it",
-        "descriptor 0x414 written",
-        "descriptor 0x410: buffer 0x3f0",
-        "descriptor 0x410 written",
-        "UADDR written before the status stage",
-        "UCFG changed while the module is on",
-    )
-    assert len(found) == len(expected), found
-    assert all(text.startswith(start) for text, start in zip(found, expected, strict=True)), found
-
-
-def _ping_pong(firmware: str) -> list[str]:
-    return Hand(firmware, ping_pong=1).host.mistakes
-
-
-def test_ping_pong_modes_are_refused_loudly(program: Program) -> None:
-    assert any("ping-pong" in text for text in in_new_process(_ping_pong, program("spin")))

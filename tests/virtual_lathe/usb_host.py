@@ -138,7 +138,13 @@ class UsbHost:
     # -- single transactions ------------------------------------------------------------------
 
     def transaction(
-        self, token: Token, endpoint: int, toggle: int = 0, data: bytes = b"", address: int = -1
+        self,
+        token: Token,
+        endpoint: int,
+        toggle: int = 0,
+        data: bytes = b"",
+        address: int = -1,
+        fresh: bool = False,
     ) -> Result:
         """Make one transaction and return how it ended; no retries.
 
@@ -148,9 +154,12 @@ class UsbHost:
             toggle: data toggle sent with SETUP and OUT, 0 or 1.
             data: at most 64 bytes for SETUP and OUT.
             address: device address; -1 for the present one.
+            fresh: an OUT packet that was never sent before: dropping it is a mistake.
         """
         target = self.address if address < 0 else address
-        self._native.vl_usb_submit(int(token), target, endpoint, toggle, data, len(data))
+        self._native.vl_usb_submit(
+            int(token), target, endpoint, toggle, data, len(data), int(fresh)
+        )
         buffer = (ctypes.c_uint8 * PACKET_BYTES)()
         count = ctypes.c_uint()
         received = ctypes.c_uint()
@@ -318,9 +327,13 @@ class UsbHost:
         """Open the serial port as a program does: line coding, DTR and RTS, polling."""
         self.control(0x21, SET_LINE_CODING, data=struct.pack("<IBBB", 115200, 0, 0, 8))
         self.control(0x21, SET_CONTROL_LINE_STATE, DTR | RTS)
+        self.poll()
+        self.port_open = True
+
+    def poll(self) -> None:
+        """Serve the endpoints of :attr:`description` from now on, as an open port has it."""
         found = self.description
         self._native.vl_usb_open(self.address, found.bulk_in, found.bulk_out, found.notification)
-        self.port_open = True
 
     def close_port(self) -> None:
         """Close the serial port: polling stops, DTR falls."""
@@ -357,6 +370,10 @@ class UsbHost:
         while self._native.vl_usb_mistake(len(found), text, len(text)) == 0:
             found.append(text.value.decode())
         return found
+
+    def report_mistake(self, what: str) -> None:
+        """Add something the device did wrong, as the bus sees it, to :attr:`mistakes`."""
+        self._native.vl_usb_report_mistake(what.encode())
 
     @property
     def counts(self) -> dict[str, int]:

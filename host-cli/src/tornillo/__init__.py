@@ -19,6 +19,7 @@ from tornillo.part import Part
 from tornillo.protocol import Axis, SettingId
 from tornillo.status import Status
 from tornillo.stored import StoredPart
+from tornillo.watch import StatusWatch
 
 __version__ = "0.1.0"
 
@@ -35,6 +36,7 @@ __all__ = [
     "PortError",
     "SettingId",
     "Status",
+    "StatusWatch",
     "StoredPart",
     "TornilloError",
     "__version__",

@@ -9,7 +9,15 @@ import sys
 import click
 
 from tornillo import __version__
-from tornillo.commands import drawing, import_dxf, parts, running, settings
+from tornillo.commands import (
+    computer,
+    drawing,
+    import_dxf,
+    parts,
+    planning,
+    running,
+    settings,
+)
 from tornillo.errors import TornilloError
 
 
@@ -43,6 +51,6 @@ def main(context: click.Context, port: str | None) -> None:
     context.obj = port
 
 
-for module in (parts, drawing, import_dxf, running, settings):
+for module in (parts, planning, drawing, import_dxf, running, settings, computer):
     for verb in module.VERBS:
         main.add_command(verb)

@@ -1,65 +1,66 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A part as a workshop drawing on A4: stock, finished shape, passes, dimensions, chuck."""
+"""A part as a workshop drawing on A4: stock, finished shape, passes, tools, dimensions, chuck.
+
+The upper half shows how it is cut, the lower half what it becomes.
+"""
 
 from pathlib import Path
 
-from tornillo.dimensions import across, along
+from tornillo.contour import Arc, Element, Line, Point, distance, turn
+from tornillo.dimensioning import Dimensions
+from tornillo.drives import Drives
+from tornillo.image import CENTRE_UNIT, SegmentKind
 from tornillo.machine import Machine
-from tornillo.part import Cylinder, Face, Part
-from tornillo.scene import Pen, Point, Scene
-from tornillo.shape import finished, passes
-from tornillo.sheet import SHEET, VIEW, draw_sheet
-from tornillo.units import NM_PER_UNIT, Scale
+from tornillo.moves import Move, Pass, Role
+from tornillo.outline import outline
+from tornillo.part import Part
+from tornillo.plan_report import PlanReport
+from tornillo.scene import Pen, Scene
+from tornillo.scene import Point as Spot
+from tornillo.sheet import SHEET, VIEW, Legend, draw_sheet
+from tornillo.tool_picture import draw_tool
+from tornillo.view import CHUCK_LENGTH, JAW_HEIGHT, View
 
 OUTLINE = Pen(0.5)
+SHOULDER = Pen(0.35)
 STOCK_EDGE = Pen(0.25, "#8a5a2b", (2.0, 1.2))
 CENTRE = Pen(0.18, "#57606a", (6.0, 1.2, 1.2, 1.2))
 ROUGHING = Pen(0.2, "#d9822b")
+SMOOTHING = Pen(0.25, "#2b8a78")
 FINISHING = Pen(0.3, "#c2255c")
+RAPID = Pen(0.1, "#4f83b5", (0.9, 0.7))
 CHUCK_EDGE = Pen(0.35, "#57606a")
 HATCH = Pen(0.13, "#8c959f")
-STOCK_FILL, PART_FILL, CHUCK_FILL, TOOL_FILL = "#fbeedd", "#c9d7e6", "#eaeef2", "#6e7781"
-SCALES = (20.0, 10.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.25, 0.2, 0.1, 0.05)
-CHUCK_LENGTH, JAW_HEIGHT, HATCH_PITCH = 20.0, 11.0, 2.2
-FIRST_ROW, ROW = 9.0, 7.5
-
-
-class View:
-    """Where steps and lengths of the part land on the sheet."""
-
-    def __init__(self, part: Part, machine: Machine, columns: int, rows: int) -> None:
-        """Choose the largest usual scale; leave room for dimension `columns` and `rows`."""
-        self.image = part.steps(machine)
-        self.scale = Scale(part.units, machine)
-        header = self.image.header
-        self.x_mm = machine.step_x_nm / NM_PER_UNIT["mm"]
-        self.z_mm = machine.step_z_nm / NM_PER_UNIT["mm"]
-        (left, low), (right, high) = VIEW
-        room_x = right - left - CHUCK_LENGTH - FIRST_ROW - ROW * columns
-        room_y = high - low - JAW_HEIGHT - max(JAW_HEIGHT, FIRST_ROW + ROW * rows)
-        length = (header.stock_length + header.stock_front) * self.z_mm
-        diameter = 2 * header.stock_radius * self.x_mm
-        fits = min(room_x / length, room_y / diameter)
-        self.factor = next((value for value in SCALES if value <= fits), fits)
-        used = CHUCK_LENGTH + length * self.factor + FIRST_ROW + ROW * columns
-        start = left + (right - left - used) / 2 + CHUCK_LENGTH
-        self.origin_x = start + header.stock_length * self.z_mm * self.factor
-        below = max(JAW_HEIGHT, FIRST_ROW + ROW * rows)
-        spare = high - low - JAW_HEIGHT - below - diameter * self.factor
-        self.centre = low + below + spare / 2 + diameter * self.factor / 2
-
-    def at(self, z: int, x: int) -> Point:
-        """The place of a point in steps; `x` below 0 is the lower half."""
-        return (
-            self.origin_x + z * self.z_mm * self.factor,
-            self.centre + x * self.x_mm * self.factor,
-        )
+STOCK_FILL, PART_FILL, CHUCK_FILL = "#fbeedd", "#c9d7e6", "#eaeef2"
+HATCH_PITCH = 2.2
+TOOL_HEIGHT = 9.0
+#: How far around the stock rapids are shown, mm on the sheet.
+AROUND = 5.0
+#: File units and radians: what is no shoulder, and no edge.
+TOUCHING, EDGE = 1e-4, 0.05
+PENS = {
+    Role.ROUGHING: ROUGHING,
+    Role.FACING: ROUGHING,
+    Role.PLUNGING: ROUGHING,
+    Role.SMOOTHING: SMOOTHING,
+    Role.FINISHING: FINISHING,
+    Role.SPRING: FINISHING,
+}
+LEGEND = (
+    Legend("roughing pass", ROUGHING),
+    Legend("along the contour", SMOOTHING),
+    Legend("finishing pass", FINISHING),
+    Legend("rapid", RAPID),
+    Legend("raw stock", STOCK_EDGE),
+    Legend("finished part", fill=PART_FILL),
+)
 
 
 def draw_part(part: Part, machine: Machine, path: Path) -> None:
     """Write the drawing of `part` to `path`, .svg or .png.
 
-    Raises TornilloError when .png is wanted and matplotlib is not installed.
+    Raises TornilloError when .png is wanted and matplotlib is not installed, PartError for a
+    shape that the tool cannot cut.
     """
     scene = part_scene(part, machine)
     if path.suffix == ".png":
@@ -72,39 +73,30 @@ def draw_part(part: Part, machine: Machine, path: Path) -> None:
 
 def part_scene(part: Part, machine: Machine) -> Scene:
     """The drawing of `part` as it is cut on `machine`."""
-    diameters = sorted({op.diameter for op in part.operations if op.diameter > 0})
-    lengths = _lengths(part)
-    view = View(part, machine, len(diameters) + 1, len(lengths))
+    report = PlanReport(part, machine, Drives.usual(machine))
+    pieces = outline(part)
+    dimensions = Dimensions(part, pieces)
+    view = View(part, VIEW, dimensions.room_right, dimensions.room_below)
     scene = Scene(*SHEET)
-    _draw_chuck(scene, view)
-    _draw_material(scene, view)
-    _draw_passes(scene, view)
-    _draw_zero(scene, view)
-    _draw_tool(scene, view)
-    _draw_dimensions(scene, view, part, diameters, lengths)
-    draw_sheet(scene, part, machine, view.factor, (ROUGHING, FINISHING, STOCK_EDGE, PART_FILL))
+    _draw_chuck(scene, view, part)
+    _draw_material(scene, view, part, pieces)
+    _draw_moves(scene, view, report)
+    _draw_zero(scene, view, part)
+    _draw_tool(scene, view, part)
+    dimensions.draw(scene, view)
+    draw_sheet(scene, report, view, LEGEND)
     return scene
 
 
-def _lengths(part: Part) -> list[float]:
-    """Every z that is dimensioned from part zero, nearest first."""
-    found = {op.z_end for op in part.operations if isinstance(op, Cylinder)}
-    found |= {op.z for op in part.operations if isinstance(op, Face)}
-    found |= {op.z_start for op in part.operations if isinstance(op, Cylinder)}
-    found |= {part.stock.allowance, -part.stock.length}
-    return sorted(found - {0.0}, key=abs)
-
-
-def _rectangle(low: Point, high: Point) -> tuple[Point, ...]:
+def _rectangle(low: Spot, high: Spot) -> tuple[Spot, ...]:
     """The corners of a rectangle."""
     (x0, y0), (x1, y1) = low, high
     return (x0, y0), (x1, y0), (x1, y1), (x0, y1)
 
 
-def _draw_chuck(scene: Scene, view: View) -> None:
+def _draw_chuck(scene: Scene, view: View, part: Part) -> None:
     """Two jaws that hold the stock, and the body behind them."""
-    header = view.image.header
-    face, top = view.at(-header.stock_length, header.stock_radius)
+    face, top = view.at(-part.stock.length, part.stock.diameter / 2)
     bottom = 2 * view.centre - top
     body = face - CHUCK_LENGTH * 0.45
     back = face - CHUCK_LENGTH
@@ -121,7 +113,7 @@ def _draw_chuck(scene: Scene, view: View) -> None:
         scene.box(CHUCK_EDGE, *corners)
 
 
-def _hatch(scene: Scene, low: Point, high: Point) -> None:
+def _hatch(scene: Scene, low: Spot, high: Spot) -> None:
     """Fill a rectangle with lines at 45 degrees."""
     (x0, y0), (x1, y1) = low, high
     offset = HATCH_PITCH
@@ -132,36 +124,106 @@ def _hatch(scene: Scene, low: Point, high: Point) -> None:
         offset += HATCH_PITCH
 
 
-def _draw_material(scene: Scene, view: View) -> None:
-    """The stock pale, the finished part on it with its outline."""
-    header = view.image.header
-    low = view.at(-header.stock_length, -header.stock_radius)
-    high = view.at(header.stock_front, header.stock_radius)
+def _draw_material(scene: Scene, view: View, part: Part, pieces: tuple[Element, ...]) -> None:
+    """The stock pale, the finished part on it with its outline and its edges."""
+    stock = part.stock
+    low = view.at(-stock.length, -stock.diameter / 2)
+    high = view.at(stock.allowance, stock.diameter / 2)
     scene.area(STOCK_FILL, *_rectangle(low, high))
-    sections = finished(view.image)
-    upper = [(z, section.radius) for section in sections for z in (section.z_front, section.z_back)]
-    corners = [(z, -x) for z, x in reversed(upper)]
-    scene.area(PART_FILL, *(view.at(*corner) for corner in (*upper, *corners)))
-    outline = [*corners, *upper]
-    scene.line(OUTLINE, *(view.at(*corner) for corner in outline))
-    for section in sections:
-        edge = view.at(section.z_back, section.radius), view.at(section.z_back, -section.radius)
-        scene.line(Pen(0.35), *edge)
+    upper = view.trace(pieces)
+    around = [*((z, -x) for z, x in reversed(upper)), *upper]
+    if upper:
+        scene.area(PART_FILL, *(view.at(*corner) for corner in around))
+        scene.line(OUTLINE, *(view.at(*corner) for corner in around))
+    for number, piece in enumerate(pieces):
+        after = pieces[number + 1] if number + 1 < len(pieces) else None
+        if after is None or not smooth(piece, after):
+            edge = view.at(piece.end.z, piece.end.x), view.at(piece.end.z, -piece.end.x)
+            scene.line(SHOULDER, *edge)
     scene.box(STOCK_EDGE, low, high)
 
 
-def _draw_passes(scene: Scene, view: View) -> None:
-    """Every pass as a line in the upper half."""
-    for stroke in passes(view.image):
-        pen = FINISHING if stroke.finishing else ROUGHING
-        scene.line(pen, view.at(*stroke.start), view.at(*stroke.end))
+def smooth(piece: Element, after: Element) -> bool:
+    """Whether one piece goes over into the next without an edge."""
+    return distance(piece.end, after.start) < TOUCHING and abs(turn(piece, after)) < EDGE
 
 
-def _draw_zero(scene: Scene, view: View) -> None:
+def _draw_moves(scene: Scene, view: View, report: PlanReport) -> None:
+    """Every move of every pass in the upper half, rapids first, the last cut on top."""
+    passes = report.plan.passes
+    for stroke in passes:
+        for move in stroke.moves:
+            if move.rapid:
+                _draw_rapid(scene, view, report, move)
+    for stroke in passes:
+        _draw_cuts(scene, view, report, stroke)
+
+
+def _place(report: PlanReport, z: float, x: float) -> Point:
+    """A place in steps as one in file units."""
+    return Point(z * report.scale.length(1), x * report.scale.diameter(1) / 2)
+
+
+def _draw_rapid(scene: Scene, view: View, report: PlanReport, move: Move) -> None:
+    """A rapid, as far as it is near the stock."""
+    stock = report.part.stock
+    left, _ = view.at(-stock.length, 0)
+    right, top = view.at(stock.allowance, stock.diameter / 2)
+    start, end = (view.at(*_place(report, *place)) for place in (move.start, move.end))
+    seen = clipped(start, end, ((left, view.centre), (right + AROUND, top + AROUND)))
+    if seen is not None:
+        scene.line(RAPID, *seen)
+
+
+def clipped(start: Spot, end: Spot, area: tuple[Spot, Spot]) -> tuple[Spot, Spot] | None:
+    """The part of a straight line that lies in a rectangle."""
+    first, last = 0.0, 1.0
+    for axis in (0, 1):
+        way = end[axis] - start[axis]
+        low, high = area[0][axis] - start[axis], area[1][axis] - start[axis]
+        if abs(way) < 1e-9:
+            if low > 0 or high < 0:
+                return None
+            continue
+        enter, leave = sorted((low / way, high / way))
+        first, last = max(first, enter), min(last, leave)
+    if first >= last:
+        return None
+    way_x, way_y = end[0] - start[0], end[1] - start[1]
+    return (
+        (start[0] + first * way_x, start[1] + first * way_y),
+        (start[0] + last * way_x, start[1] + last * way_y),
+    )
+
+
+def _draw_cuts(scene: Scene, view: View, report: PlanReport, stroke: Pass) -> None:
+    """The cuts of a pass, those that follow each other as one line."""
+    line: list[Spot] = []
+    for move in stroke.moves:
+        if move.rapid:
+            if line:
+                scene.line(PENS[stroke.role], *line)
+            line = []
+            continue
+        points = [view.at(*place) for place in view.trace([_element(report, move)])]
+        line += points[1:] if line else points
+    if line:
+        scene.line(PENS[stroke.role], *line)
+
+
+def _element(report: PlanReport, move: Move) -> Element:
+    """A cut in file units; steps of X and Z may differ in size, so only lines stay exact."""
+    start, end = _place(report, *move.start), _place(report, *move.end)
+    if move.kind is SegmentKind.LINE:
+        return Line(start, end)
+    centre = move.start[0] + move.cz / CENTRE_UNIT, move.start[1] + move.cx / CENTRE_UNIT
+    return Arc(start, end, _place(report, *centre), move.kind is SegmentKind.CONVEX)
+
+
+def _draw_zero(scene: Scene, view: View, part: Part) -> None:
     """The centre line and the mark of part zero."""
-    header = view.image.header
-    right, _ = view.at(header.stock_front, 0)
-    left, _ = view.at(-header.stock_length, 0)
+    right, _ = view.at(part.stock.allowance, 0)
+    left, _ = view.at(-part.stock.length, 0)
     scene.line(CENTRE, (left - CHUCK_LENGTH - 4, view.centre), (right + 6, view.centre))
     x, y = view.at(0, 0)
     size = 2.0
@@ -175,49 +237,10 @@ def _draw_zero(scene: Scene, view: View) -> None:
         scene.line(Pen(0.25), *other)
 
 
-def _draw_tool(scene: Scene, view: View) -> None:
-    """A right-hand tool, clear of the stock by the retract."""
-    header = view.image.header
-    tip_x, tip_y = view.at(
-        header.stock_front + header.retract, header.stock_radius + header.retract
-    )
-    scene.area(
-        TOOL_FILL,
-        (tip_x, tip_y),
-        (tip_x + 0.8, tip_y + 7.5),
-        (tip_x + 6.0, tip_y + 7.5),
-        (tip_x + 6.0, tip_y + 3.4),
-    )
-
-
-def _draw_dimensions(
-    scene: Scene, view: View, part: Part, diameters: list[float], lengths: list[float]
-) -> None:
-    """Diameters to the right, lengths from part zero below."""
-    header = view.image.header
-    right, _ = view.at(header.stock_front, 0)
-    for column, diameter in enumerate([*diameters, part.stock.diameter]):
-        steps = view.scale.radius_steps(diameter)
-        edge, high = view.at(_front_of(view, steps), steps)
-        place = right + FIRST_ROW + ROW * column
-        span = 2 * view.centre - high, high
-        across(scene, span, edge, place, f"Ø{show(part, diameter)}")
-    zero, bottom = view.at(0, -header.stock_radius)
-    for row, z in enumerate(lengths):
-        other, _ = view.at(view.scale.z_steps(z), 0)
-        span = min(zero, other), max(zero, other)
-        place = bottom - FIRST_ROW - ROW * row
-        along(scene, span, bottom - 1, place, show(part, abs(z)))
-
-
-def _front_of(view: View, radius: int) -> int:
-    """The z where the finished part first has `radius` or more."""
-    sections = finished(view.image)
-    return next((piece.z_front for piece in sections if piece.radius >= radius), 0)
-
-
-def show(part: Part, value: float) -> str:
-    """A number as a machinist writes it in the units of the file."""
-    if part.units == "inch":
-        return f"{value:.3f}"
-    return f"{value:.3f}".rstrip("0").rstrip(".")
+def _draw_tool(scene: Scene, view: View, part: Part) -> None:
+    """The first tool, clear of the stock by the retract, as large as the part is drawn."""
+    stock, retract = part.stock, part.cut.retract
+    tip = view.at(stock.allowance + retract, stock.diameter / 2 + retract)
+    tip = tip[0], min(tip[1], view.area[1][1] - TOOL_HEIGHT - 0.5)
+    first = next((op.tool for op in part.ordered if op.type not in ("pause", "drill")), None)
+    draw_tool(scene, first or part.tools[0], tip, view.size(1), TOOL_HEIGHT)

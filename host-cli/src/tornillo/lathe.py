@@ -30,6 +30,7 @@ from tornillo.protocol import (
     PROTOCOL_VERSION,
     REQUESTS,
     RESPONSES,
+    SERIAL_LENGTH,
     SETTINGS,
     SLOT_NONE,
     UPLOAD_PIECE_MAX,
@@ -46,6 +47,7 @@ from tornillo.protocol import (
 )
 from tornillo.status import Status
 from tornillo.stored import StoredPart
+from tornillo.watch import StatusWatch
 
 Progress = Callable[[int, int], None]
 
@@ -115,6 +117,14 @@ class Lathe:
     def status(self) -> Status:
         """Where the tool is and what the machine does."""
         return Status.from_data(StatusData(*self._numbers(Command.STATUS)))
+
+    def watch(self, callback: Callable[[Status], object], every_s: float = 0.1) -> StatusWatch:
+        """Call `callback` with the status every `every_s` seconds, in a thread of its own.
+
+        with lathe.watch(print):
+            lathe.run()
+        """
+        return StatusWatch(self.status, callback, every_s)
 
     def home(self) -> None:
         """Start to look for the limit switches; `status()` tells the end."""
@@ -253,6 +263,21 @@ class Lathe:
         """Change a setting and store it."""
         self._request(Command.SETTING_SET, setting, value)
 
+    def set_serial_number(self, serial: str) -> None:
+        """Give the chip another serial number: 8 characters from ! to ~ without a comma.
+
+        USB shows it from the next connection on. Raises TornilloError for other characters.
+        """
+        fits = all("!" <= character <= "~" and character != "," for character in serial)
+        if len(serial) != SERIAL_LENGTH or not fits:
+            raise TornilloError(
+                f'"{serial}" cannot be a serial number',
+                f"choose {SERIAL_LENGTH} letters, digits or signs, without spaces and commas, "
+                "like TN-00042",
+            )
+        self._request(Command.SERIAL_SET, serial.encode("ascii"))
+        self.hello = self._greet()
+
     def _greet(self) -> HelloData:
         """Start the sequence anew and check the protocol version."""
         data = self._request(Command.HELLO)
@@ -264,7 +289,7 @@ class Lathe:
             )
         return HelloData(*self._unpack(Command.HELLO, data))
 
-    def _request(self, command: Command, *values: int, data: bytes = b"") -> bytes:
+    def _request(self, command: Command, *values: int | bytes, data: bytes = b"") -> bytes:
         """Send a request made of `values` and `data`."""
         try:
             payload = REQUESTS[command].pack(*values) + data

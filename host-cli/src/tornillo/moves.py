@@ -78,10 +78,12 @@ class Pass:
 
     @property
     def stroke(self) -> tuple[Place, Place]:
-        """Where the last continuous cut begins and where it ends."""
+        """Where the last continuous cut begins and where it ends; of a plunge all of its cuts."""
         last = len(self.moves) - 1
         while self.moves[last].rapid:
             last -= 1
+        if self.role is Role.PLUNGING:
+            return self.cuts[0].start, self.moves[last].end
         first = last
         while first > 0 and not self.moves[first - 1].rapid:
             first -= 1

@@ -22,7 +22,7 @@ from tornillo.contour import (
 from tornillo.corners import SMOOTH, joined
 
 SQUARE = math.pi / 2
-BISECTIONS = 40
+BISECTIONS = 16
 SAMPLES = 8
 
 
@@ -57,7 +57,10 @@ def tip_path(
     first = 1 if before else 0
     path = centre.path(first, first + len(contour))
     _no_gouge(path, whole, nose, fine)
-    return joined([element.shifted(Point(-nose, -nose)) for element in path])
+    moved = joined([element.shifted(Point(-nose, -nose)) for element in path])
+    if not moved:
+        raise NoseError("the nose does not reach this piece", contour[0].place, contour[0].end)
+    return moved
 
 
 def largest_nose(
@@ -160,12 +163,11 @@ def _must_run_on(element: Element, path: Element) -> None:
 def _no_gouge(path: list[Element], whole: list[Element], nose: float, fine: float) -> None:
     """Refuse a path on which the nose cuts into a piece that is no neighbour."""
     for element in path:
+        low, high = element.end.z - nose, element.start.z + nose
+        near = [other for other in whole if other.end.z < high and other.start.z > low]
         for place in _samples(element):
-            for other in whole:
-                low = min(other.start.z, other.end.z) - nose
-                if low < place.z < max(other.start.z, other.end.z) + nose and (
-                    away(other, place) < nose - fine
-                ):
+            for other in near:
+                if away(other, place) < nose - fine:
                     raise NoseError("the nose would cut into this piece", other.place, other.end)
 
 

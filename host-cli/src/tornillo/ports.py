@@ -54,14 +54,15 @@ def _explained(name: str, error: OSError) -> PortError:
     if error.errno == errno.EACCES or "Permission" in text or "Access is denied" in text:
         return PortError(
             f"no permission to use {name}",
-            "on Linux join the group that owns the port: `sudo usermod -aG dialout $USER`, then "
-            "log out and in again; on Windows close the program that uses the port",
+            "on Linux run `sudo tornillo udev` once and plug the cable in again, or join the group "
+            "that owns the port: `sudo usermod -aG dialout $USER`, then log out and in again; "
+            "on Windows close the program that uses the port",
         )
     if error.errno == errno.EBUSY or "exclusively lock" in text or "busy" in text.lower():
         return PortError(
             f"{name} is in use by another program",
             "close the other program; right after plugging in, ModemManager may be probing the "
-            "port: wait 30 s, or stop it with `sudo systemctl stop ModemManager`",
+            "port: wait 30 s, or keep it off for good with `sudo tornillo udev`",
         )
     if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO) or "FileNotFound" in text:
         return PortError(

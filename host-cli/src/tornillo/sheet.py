@@ -1,113 +1,223 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sheet around a drawing: frame, title block, legend, list of operations."""
+"""The sheet around a drawing: frame, list of operations, tools, legend, title block."""
 
-from tornillo.machine import Machine
-from tornillo.part import Cut, Cylinder, Part
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from tornillo.contour import Line
+from tornillo.dimensioning import show
+from tornillo.operations import Contour, Operation, Pause, Plunge
+from tornillo.part import Part
+from tornillo.plan_report import OperationSummary, PlanReport, show_time
 from tornillo.scene import Pen, Point, Scene, Text
-from tornillo.shape import Pass, passes
+from tornillo.tool_picture import draw_angles, draw_tool
+from tornillo.tools import Tool
+from tornillo.view import View
 
 SHEET = (297.0, 210.0)
 FRAME: tuple[Point, Point] = ((8.0, 8.0), (289.0, 202.0))
-TITLE_TOP = 52.0
-VIEW: tuple[Point, Point] = ((12.0, TITLE_TOP + 3.0), (285.0, 199.0))
+TITLE_TOP = 58.0
+VIEW: tuple[Point, Point] = ((12.0, TITLE_TOP + 3.0), (285.0, 200.0))
 BORDER, RULE = Pen(0.5), Pen(0.2)
-LEFT_BLOCK, RIGHT_BLOCK = 108.0, 190.0
-SMALL, NORMAL, LARGE = 2.9, 3.2, 6.5
-ROWS, ROW = 7, 4.6
+TOOLS_BLOCK, LEGEND_BLOCK, TITLE_BLOCK = 104.0, 168.0, 204.0
+SMALL, NORMAL, LARGE = 2.7, 3.2, 6.5
+ROWS, ROW = 9, 4.4
 GREY = "#57606a"
+TOOL_HEIGHT = 10.0
+TOOLS_SHOWN = 3
 
 
-def draw_sheet(
-    scene: Scene, part: Part, machine: Machine, factor: float, styles: tuple[Pen, Pen, Pen, str]
-) -> None:
-    """Draw everything that is not the part; `factor` is the scale of the drawing."""
+class Legend(NamedTuple):
+    """What a line or a fill means."""
+
+    text: str
+    pen: Pen | None = None
+    fill: str = ""
+
+
+def draw_sheet(scene: Scene, report: PlanReport, view: View, legend: Sequence[Legend]) -> None:
+    """Draw everything that is not the part."""
     (left, low), (right, high) = FRAME
     scene.box(BORDER, (left, low), (right, high))
     scene.line(BORDER, (left, TITLE_TOP), (right, TITLE_TOP))
-    for x in (LEFT_BLOCK, RIGHT_BLOCK):
+    for x in (TOOLS_BLOCK, LEGEND_BLOCK, TITLE_BLOCK):
         scene.line(RULE, (x, low), (x, TITLE_TOP))
-    _operations(scene, part, machine)
-    _legend(scene, styles)
-    _title(scene, part, machine, factor)
-
-
-def _operations(scene: Scene, part: Part, machine: Machine) -> None:
-    """What is cut, in order, with the number of passes."""
-    strokes = passes(part.steps(machine))
-    left = FRAME[0][0] + 3
-    _heading(scene, left, f"Operations ({part.units})")
-    shown = part.operations if len(part.operations) <= ROWS else part.operations[: ROWS - 1]
-    lines = []
-    for position, operation in enumerate(shown, start=1):
-        number = f"{position:2d}  {operation.type}"
-        if isinstance(operation, Cylinder):
-            place = f"z {operation.z_start:g} to {operation.z_end:g}, Ø{operation.diameter:g}"
-        else:
-            place = f"z {operation.z:g}, to Ø{operation.diameter:g}"
-        lines.append(f"{number}: {place}; {_count(strokes, position)}")
-    if len(shown) < len(part.operations):
-        lines.append(f"    and {len(part.operations) - len(shown)} more")
-    for row, line in enumerate(lines):
-        scene.text(Text((left, TITLE_TOP - 11 - row * ROW), line, SMALL))
-
-
-def _count(strokes: list[Pass], position: int) -> str:
-    """How many passes an operation takes."""
-    mine = [stroke for stroke in strokes if stroke.operation == position]
-    roughing = sum(not stroke.finishing for stroke in mine)
-    text = f"{roughing} {'pass' if roughing == 1 else 'passes'}"
-    return f"{text} + finish" if len(mine) > roughing else text
-
-
-def _legend(scene: Scene, styles: tuple[Pen, Pen, Pen, str]) -> None:
-    """What the lines mean."""
-    roughing, finishing, stock, fill = styles
-    left = LEFT_BLOCK + 3
-    _heading(scene, left, "Legend")
-    top = TITLE_TOP - 11
-    for row, (pen, text) in enumerate(
-        (
-            (roughing, "roughing pass"),
-            (finishing, "finishing pass"),
-            (stock, "raw stock"),
-        )
-    ):
-        y = top - row * ROW
-        scene.line(pen, (left, y), (left + 10, y))
-        scene.text(Text((left + 13, y), text, SMALL))
-    y = top - 3 * ROW
-    scene.area(fill, (left, y - 1.5), (left + 10, y - 1.5), (left + 10, y + 1.5), (left, y + 1.5))
-    scene.text(Text((left + 13, y), "finished part", SMALL))
-    notes = (
-        "Part zero: front face, on the axis. Lengths from part zero.",
-        "Right-hand tool, feeding towards the chuck.",
-    )
-    for row, note in enumerate(notes):
-        scene.text(Text((left, y - (row + 1.3) * ROW), note, 2.4, color=GREY))
-
-
-def _title(scene: Scene, part: Part, machine: Machine, factor: float) -> None:
-    """Name, stock and cutting data."""
-    left = RIGHT_BLOCK + 3
-    scene.text(Text((left, TITLE_TOP - 6.5), part.name, LARGE, bold=True))
-    cut: Cut = part.cut
-    units = part.units
-    allowance = f" + {part.stock.allowance:g} raw" if part.stock.allowance else ""
-    scale = f"{factor:.3g}:1" if factor >= 1 else f"1:{1 / factor:.3g}"
-    rows = (
-        ("stock", f"Ø{part.stock.diameter:g} x {part.stock.length:g}{allowance} {units}"),
-        ("depth of cut", f"{cut.depth_of_cut:g} {units}, finish {cut.finish_allowance:g}"),
-        ("feed", f"{cut.feed:g} {units}/min, finish {cut.finish_feed:g}"),
-        ("retract", f"{cut.retract:g} {units}"),
-        ("machine", f"{machine.name}, step {machine.step_z_nm / 1000:g} µm"),
-        ("scale", f"{scale} on A4"),
-    )
-    for row, (name, value) in enumerate(rows):
-        y = TITLE_TOP - 14.5 - row * ROW
-        scene.text(Text((left, y), name, SMALL, color=GREY))
-        scene.text(Text((left + 24, y), value, SMALL))
+    _operations(scene, report)
+    _tools(scene, report.part, view)
+    _legend(scene, legend)
+    _title(scene, report, view)
 
 
 def _heading(scene: Scene, left: float, text: str) -> None:
     """The title of a block."""
     scene.text(Text((left, TITLE_TOP - 5), text, NORMAL, bold=True))
+
+
+def _shortened(text: str, room: float, size: float) -> str:
+    """A text that fits into `room`."""
+    most = int(room / (size * 0.58))
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
+def _operations(scene: Scene, report: PlanReport) -> None:
+    """What is cut, in order, with passes and time."""
+    left, right = FRAME[0][0] + 3, TOOLS_BLOCK - 2.5
+    _heading(scene, left, f"Operations ({report.part.units})")
+    summaries = list(report.operations())
+    shown = summaries if len(summaries) <= ROWS else summaries[: ROWS - 1]
+    for row, summary in enumerate(shown):
+        operation = report.part.ordered[summary.number - 1]
+        y = TITLE_TOP - 10.5 - row * ROW
+        effort = _effort(summary)
+        room = right - left - len(effort) * SMALL * 0.58
+        text = f"{operation.position + 1:2d}  {operation.type}: {place_of(operation)}"
+        scene.text(Text((left, y), _shortened(text, room, SMALL), SMALL))
+        scene.text(Text((right, y), effort, SMALL, "end", color=GREY))
+    if len(shown) < len(summaries):
+        y = TITLE_TOP - 10.5 - len(shown) * ROW
+        scene.text(Text((left, y), f"    and {len(summaries) - len(shown)} more", SMALL))
+
+
+def _effort(summary: OperationSummary) -> str:
+    """Passes and time."""
+    if not summary.tool:
+        return "RUN goes on"
+    noun = "pass" if summary.passes == 1 else "passes"
+    return f"{summary.passes} {noun}, {show_time(summary.seconds)}"
+
+
+def place_of(operation: Operation) -> str:
+    """Where an operation cuts, in the numbers of the file."""
+    shape = operation.shape
+    if isinstance(shape, Pause):
+        return shape.message
+    if isinstance(shape, Plunge):
+        z = _number(shape.front)
+        if shape.front != shape.back:
+            z = f"{z} to {_number(shape.back)}"
+        return f"z {z}, Ø{_number(shape.diameter)}"
+    assert isinstance(shape, Contour)
+    first, last = shape.elements[0].start, shape.elements[-1].end
+    if operation.type == "face":
+        return f"z {_number(first.z)}, to Ø{_number(2 * first.x)}"
+    if operation.type == "cylinder" and isinstance(shape.elements[0], Line):
+        return f"z {_number(first.z)} to {_number(last.z)}, Ø{_number(2 * first.x)}"
+    ends = f"Ø{_number(2 * first.x)} to Ø{_number(2 * last.x)}"
+    return f"z {_number(first.z)} to {_number(last.z)}, {ends}"
+
+
+def _used(part: Part) -> Iterator[Tool]:
+    """The tools in the order of their use."""
+    seen: list[str] = []
+    for operation in part.ordered:
+        if not isinstance(operation.shape, Pause) and operation.tool.name not in seen:
+            seen.append(operation.tool.name)
+            yield operation.tool
+
+
+def _tools(scene: Scene, part: Part, view: View) -> None:
+    """Each tool with its edges, at the scale of the part as far as the block has room."""
+    left = TOOLS_BLOCK + 3
+    tools = list(_used(part))
+    _heading(scene, left, "Tools" if len(tools) > 1 else "Tool")
+    pitch = (LEGEND_BLOCK - TOOLS_BLOCK - 4) / TOOLS_SHOWN
+    for column, tool in enumerate(tools[:TOOLS_SHOWN]):
+        x = left + column * pitch
+        scale = view.size(1)
+        widest = max(tool.width, 3 * tool.nose_radius) * scale
+        if widest > TOOL_HEIGHT:
+            scale *= TOOL_HEIGHT / widest
+        tip = x + 6.0, TITLE_TOP - 23.5
+        draw_angles(scene, tool, tip, TOOL_HEIGHT)
+        draw_tool(scene, tool, tip, scale, TOOL_HEIGHT)
+        for row, line in enumerate(tool_lines(part, tool)):
+            y = TITLE_TOP - 27.5 - row * 3.4
+            scene.text(Text((x, y), line, 2.4, bold=row == 0))
+    if len(tools) > TOOLS_SHOWN:
+        names = ", ".join(tool.name for tool in tools[TOOLS_SHOWN:])
+        text = _shortened(f"and {names}", LEGEND_BLOCK - left - 2, 2.4)
+        scene.text(Text((left, FRAME[0][1] + 2.4), text, 2.4))
+
+
+def tool_lines(part: Part, tool: Tool) -> list[str]:
+    """Name and sizes of a tool in words."""
+    sizes = []
+    if tool.width:
+        sizes.append(f"width {show(part, tool.width)}")
+    else:
+        sizes.append(f"{tool.hand} hand" if tool.hand != "neutral" else "neutral")
+        sizes += [f"front {tool.front_clearance:g}°", f"back {tool.back_clearance:g}°"]
+    if tool.nose_radius:
+        sizes.append(f"nose R{show(part, tool.nose_radius)}")
+    if tool.offset_z or tool.offset_x:
+        sizes.append(f"off z {_number(tool.offset_z)}, Ø {_number(2 * tool.offset_x)}")
+    return [tool.name, *sizes]
+
+
+def _legend(scene: Scene, legend: Sequence[Legend]) -> None:
+    """What the lines mean."""
+    left = LEGEND_BLOCK + 2.5
+    _heading(scene, left, "Legend")
+    for row, entry in enumerate(legend):
+        y = TITLE_TOP - 10.5 - row * ROW
+        if entry.pen is not None:
+            scene.line(entry.pen, (left, y), (left + 7, y))
+        else:
+            low, high = (left, y - 1.4), (left + 7, y + 1.4)
+            scene.area(entry.fill, low, (high[0], low[1]), high, (low[0], high[1]))
+        scene.text(Text((left + 8.5, y), entry.text, 2.4))
+    for row, note in enumerate(("zero: front face, axis", "lengths from zero")):
+        y = TITLE_TOP - 12.5 - (len(legend) + row) * ROW
+        scene.text(Text((left, y), note, 2.4, color=GREY))
+
+
+def _title(scene: Scene, report: PlanReport, view: View) -> None:
+    """Name, stock, cutting data, time."""
+    part, units = report.part, report.part.units
+    left = TITLE_BLOCK + 3
+    scene.text(Text((left, TITLE_TOP - 6.5), part.name, LARGE, bold=True))
+    factor = view.factor
+    scale = f"{factor:.3g}:1" if factor >= 1 else f"1:{1 / factor:.3g}"
+    allowance = f" + {show(part, part.stock.allowance)} raw" if part.stock.allowance else ""
+    cut = part.cut
+    spring = f", {cut.spring_passes} spring" if cut.spring_passes else ""
+    stock = f"Ø{show(part, part.stock.diameter)} x {show(part, part.stock.length)}{allowance}"
+    share = f"{report.timing.share:.0%} in the cut"
+    rows = (
+        ("stock", f"{stock} {units}"),
+        ("depth of cut", f"{_number(cut.depth_of_cut)} {units}, retract {_number(cut.retract)}"),
+        ("finish", f"{_number(cut.finish_allowance)} {units} left{spring}"),
+        ("feed", f"{_number(cut.feed)} {units}/min, finish {_number(cut.finish_feed)}"),
+        ("spindle", _spindle(part)),
+        ("time", f"about {show_time(report.timing.total)}, {share}"),
+        ("machine", f"{report.scale.machine.name}, step {_step(report)}"),
+        ("scale", f"{scale} on A4, {units}"),
+    )
+    for row, (name, value) in enumerate(rows):
+        y = TITLE_TOP - 14.0 - row * ROW
+        scene.text(Text((left, y), name, SMALL, color=GREY))
+        room = FRAME[1][0] - left - 24
+        scene.text(Text((left + 22, y), _shortened(value, room, SMALL), SMALL))
+
+
+def _number(value: float) -> str:
+    """A number as short as it can be."""
+    return f"{value:g}"
+
+
+def _step(report: PlanReport) -> str:
+    """The size of a step."""
+    machine = report.scale.machine
+    if machine.step_x_nm == machine.step_z_nm:
+        return f"{machine.step_z_nm / 1000:g} µm"
+    return f"X {machine.step_x_nm / 1000:g}, Z {machine.step_z_nm / 1000:g} µm"
+
+
+def _spindle(part: Part) -> str:
+    """The advised speeds, each once."""
+    speeds: list[int] = []
+    for operation in part.ordered:
+        speed = operation.cut.spindle
+        if speed and speed not in speeds and not isinstance(operation.shape, Pause):
+            speeds.append(speed)
+    return f"{', '.join(map(str, speeds))} rev/min" if speeds else "no advice"

@@ -7,6 +7,7 @@
 #include "virtual_lathe.h"
 
 #include <algorithm>
+#include <iterator>
 #include <random>
 
 using lathe::chip;
@@ -52,9 +53,11 @@ private:
 
 constexpr size_t WRITE_LOG_MAX = 65536;
 std::vector<vl_ram_write> write_log;
+uint8_t written[0x1000];
 
 void Watched::put(unsigned value)
 {
+    written[address] = 1;
     if (write_log.size() < WRITE_LOG_MAX)
         write_log.push_back(
             {chip().now(), address, value, chip().cpu->pc->value * 2});
@@ -224,4 +227,9 @@ int vl_ram_writes(struct vl_ram_write *entries, int room)
     int count = std::min(room, int(write_log.size()));
     std::copy_n(write_log.begin(), count, entries);
     return int(write_log.size());
+}
+
+void vl_written(uint8_t flags[0x1000])
+{
+    std::copy(std::begin(written), std::end(written), flags);
 }

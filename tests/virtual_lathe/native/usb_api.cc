@@ -33,13 +33,15 @@ void vl_usb_suspend(int on)
 }
 
 void vl_usb_submit(int token, unsigned address, unsigned endpoint,
-                   unsigned toggle, const uint8_t *data, unsigned count)
+                   unsigned toggle, const uint8_t *data, unsigned count,
+                   int fresh)
 {
     usb_host().submit({static_cast<lathe::Token>(token),
                        address,
                        endpoint,
                        toggle,
-                       {data, data + count}});
+                       {data, data + count},
+                       fresh != 0});
 }
 
 int vl_usb_result(uint8_t data[64], unsigned *count, unsigned *toggle)
@@ -109,4 +111,9 @@ int vl_usb_mistake(unsigned index, char *text, unsigned room)
         return -1;
     snprintf(text, room, "%s", list[index].c_str());
     return 0;
+}
+
+void vl_usb_report_mistake(const char *text)
+{
+    usb_engine().mistake(text);
 }

@@ -20,17 +20,22 @@ Handshake UsbEngine::begin(Packet &packet)
         bool ready = !(control & EPCONDIS) &&
                      fifo_.size() < STATUS_FIFO_DEPTH &&
                      descriptor(n, false).stat & UOWN;
+        if (!ready && n == 0)
+            check_setup_refused();
         return ready ? Handshake::Ack : Handshake::None;
     }
     Descriptor d = descriptor(n, in);
     if (reg(UCON) & PKTDIS || fifo_.size() >= STATUS_FIFO_DEPTH ||
-        !(d.stat & UOWN))
+        !(d.stat & UOWN)) {
+        check_refused();
         return Handshake::Nak;
+    }
     if (d.stat & BSTALL) {
         reg(UEP0 + n) |= EPSTALL;
         raise(STALLIF);
         return Handshake::Stall;
     }
+    check_stall_handled(n);
     if (in) {
         packet.toggle = d.stat & DTS ? 1 : 0;
         packet.data.clear();
@@ -74,10 +79,10 @@ void UsbEngine::complete(const Packet &packet)
     }
     if (packet.token == Token::Setup) {
         reg(UCON) |= PKTDIS;
-        set_address_open_ =
-            count >= 2 && packet.data[0] == 0 && packet.data[1] == 5;
-    } else if (in && n == 0) {
+        setup_seen(packet.data);
+    } else if (in && n == 0 && set_address_open_) {
         set_address_open_ = false;
+        expect_address();
     }
     write_back(d, packet.token, count);
     push_status(n << 3 | (in ? 4 : 0));
@@ -105,18 +110,24 @@ void UsbEngine::bus_reset(bool active)
     reg(UCON) &= ~PKTDIS;
     reg(UADDR) = 0;
     set_address_open_ = false;
+    wanted_address_ = granted_address_ = NO_ADDRESS;
+    address_ticket_++;
     reset_seen_ = true;
     raise(URSTIF);
 }
 
 void UsbEngine::bus_idle()
 {
+    idle_ = true;
     if (connected())
         raise(IDLEIF);
 }
 
 void UsbEngine::bus_activity()
 {
+    if (idle_)
+        idle_end_ = chip().now();
+    idle_ = false;
     if (connected() && reg(UCON) & SUSPND)
         raise(ACTVIF);
 }

@@ -15,9 +15,10 @@ namespace
 {
 
 constexpr uint8_t USBIF = 0x20;
+// Section 17.5.1.1: ACTVIF stays set until the engine's clock is back.
+constexpr uint64_t CLOCK_BACK_CYCLES = 60;
 // Section 17.2.3: TRNIF comes back at most 6 cycles after it was cleared.
 constexpr uint64_t TRNIF_AGAIN_CYCLES = 6;
-constexpr size_t MISTAKES_MAX = 200;
 
 class UsbRegister : public sfr_register
 {
@@ -58,6 +59,7 @@ public:
     }
     unsigned get() override
     {
+        usb_engine().ram_read(address);
         return value.get();
     }
     void put(unsigned v) override
@@ -116,16 +118,11 @@ void UsbEngine::reset()
 {
     std::fill(std::begin(regs_), std::end(regs_), 0);
     fifo_.clear();
-    status_shown_ = set_address_open_ = reset_seen_ = false;
-}
-
-void UsbEngine::mistake(const std::string &what)
-{
-    if (mistakes.size() < MISTAKES_MAX)
-        mistakes.push_back(text("cycle %llu, address 0x%04x: ",
-                                (unsigned long long)chip().now(),
-                                chip().cpu->pc->value * 2) +
-                           what);
+    status_shown_ = status_read_ = set_address_open_ = reset_seen_ = false;
+    wanted_address_ = granted_address_ = NO_ADDRESS;
+    address_ticket_++;
+    highest_ = 0;
+    idle_ = false;
 }
 
 bool UsbEngine::connected() const
@@ -173,7 +170,10 @@ void UsbEngine::pop_status()
 {
     if (!status_shown_)
         return;
-    status_shown_ = false;
+    if (!status_read_ && !reset_seen_)
+        mistake("TRNIF cleared before USTAT was read: a transaction is lost");
+    status_shown_ = status_read_ = false;
+    last_pop_ = chip().now();
     fifo_.erase(fifo_.begin());
     if (fifo_.empty())
         return;
@@ -193,6 +193,7 @@ unsigned UsbEngine::read(unsigned address)
         return reg(address);
     if (!(reg(UIR) & TRNIF))
         mistake("USTAT read without TRNIF");
+    status_read_ = true;
     return status_shown_ ? fifo_.front() : 0;
 }
 
@@ -203,6 +204,10 @@ void UsbEngine::write_ucon(uint8_t value)
     after |= before & SE0;
     after |= before & value & PKTDIS; // firmware can only clear it
     reg(UCON) = after;
+    if (after & ~before & SUSPND)
+        check_suspend();
+    if (before & ~after & SUSPND)
+        clock_back_ = chip().now() + CLOCK_BACK_CYCLES;
     if (!(before & USBEN) && after & USBEN) {
         if (reg(UCFG) & PPB)
             mistake("ping-pong buffering is not modelled: use PPB = 0");
@@ -222,6 +227,8 @@ void UsbEngine::write_ucon(uint8_t value)
 void UsbEngine::write_uir(uint8_t value)
 {
     uint8_t before = reg(UIR);
+    if (before & ACTVIF && (reg(UCON) & SUSPND || chip().now() < clock_back_))
+        value |= ACTVIF;
     reg(UIR) = before & (value | UERRIF); // flags are only cleared
     if (before & ~reg(UIR) & TRNIF)
         pop_status();
@@ -249,8 +256,11 @@ void UsbEngine::write(unsigned address, unsigned value)
         mistake(text("write to read-only register 0x%03x", address));
         return;
     case UADDR:
-        if (value & 0x7F && set_address_open_)
-            mistake("UADDR written before the status stage of SET_ADDRESS");
+        if (value & 0x7F && value != granted_address_ && !reset_seen_)
+            mistake(
+                set_address_open_
+                    ? "UADDR written before the status stage of SET_ADDRESS"
+                    : text("UADDR set to %u, which nobody asked for", value));
         reg(UADDR) = value & 0x7F;
         return;
     case UCFG:
@@ -260,6 +270,8 @@ void UsbEngine::write(unsigned address, unsigned value)
         return;
     default:
         reg(address) = value;
+        if (address >= UEP0)
+            endpoint_changed(address - UEP0);
         update_interrupt();
     }
 }
@@ -277,72 +289,6 @@ UsbEngine::Descriptor UsbEngine::descriptor(unsigned endpoint, bool in) const
 bool UsbEngine::endpoint_on(unsigned endpoint, bool in) const
 {
     return value(UEP0 + endpoint) & (in ? EPINEN : EPOUTEN);
-}
-
-bool UsbEngine::buffer_fits(const Descriptor &d, unsigned count)
-{
-    unsigned first_free = RAM_FIRST;
-    for (unsigned n = 0; n < ENDPOINTS; n++) {
-        if (value(UEP0 + n) & (EPINEN | EPOUTEN))
-            first_free = RAM_FIRST + (n + 1) * 2 * DESCRIPTOR_BYTES;
-    }
-    if (d.address >= first_free && d.address + count <= RAM_LAST + 1)
-        return true;
-    mistake(text("descriptor 0x%03x: buffer 0x%03x + %u is outside "
-                 "0x%03x..0x7FF",
-                 d.at, d.address, count, first_free));
-    return false;
-}
-
-bool UsbEngine::owned(unsigned address, std::string &what) const
-{
-    for (unsigned n = 0; n < ENDPOINTS; n++) {
-        for (bool in : {false, true}) {
-            if (!endpoint_on(n, in))
-                continue;
-            Descriptor d = descriptor(n, in);
-            if (!(d.stat & UOWN))
-                continue;
-            const char *name = in ? "IN" : "OUT";
-            if (address >= d.address && address < d.address + d.count) {
-                what = text("buffer of endpoint %u %s", n, name);
-                return true;
-            }
-            if (address > d.at && address < d.at + DESCRIPTOR_BYTES) {
-                what = text("descriptor of endpoint %u %s", n, name);
-                return true;
-            }
-        }
-    }
-    return false;
-}
-
-void UsbEngine::ram_written(unsigned address, unsigned old_value,
-                            unsigned value)
-{
-    if (!(reg(UCON) & USBEN) || reg(UCON) & (PKTDIS | SE0) || reset_seen_)
-        return;
-    unsigned slot = (address - RAM_FIRST) / DESCRIPTOR_BYTES;
-    bool stat = address % DESCRIPTOR_BYTES == 0 && slot < ENDPOINTS * 2 &&
-                endpoint_on(slot / 2, slot & 1);
-    if (stat) {
-        if (old_value & UOWN)
-            mistake(text("descriptor 0x%03x written (0x%02x -> 0x%02x) while "
-                         "the engine owns it",
-                         address, old_value, value));
-        if (value & UOWN) {
-            Descriptor d = descriptor(slot / 2, slot & 1);
-            if (buffer_fits(d, d.count) && d.count > PACKET_MAX)
-                mistake(text("descriptor 0x%03x: %u bytes are more than a "
-                             "packet",
-                             address, d.count));
-        }
-        return;
-    }
-    std::string what;
-    if (owned(address, what))
-        mistake(text("0x%03x written while the engine owns it: ", address) +
-                what);
 }
 
 void UsbEngine::write_back(const Descriptor &d, Token token, unsigned count)

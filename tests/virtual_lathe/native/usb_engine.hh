@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The USB serial interface engine of the PIC18F4550 (data sheet chapter 17):
 // special function registers, buffer descriptors in dual-port RAM, and the
-// answers to tokens from the bus.  It also keeps a list of mistakes: things
-// the firmware does that the data sheet forbids or that race with the engine.
+// answers to tokens from the bus.  usb_rules.cc keeps a list of mistakes:
+// things the firmware does that the data sheet forbids or that race with the
+// engine.
 
 #ifndef VIRTUAL_LATHE_USB_ENGINE_HH
 #define VIRTUAL_LATHE_USB_ENGINE_HH
@@ -14,6 +15,8 @@ namespace lathe
 
 enum class Handshake { None = 0, Ack = 1, Nak = 2, Stall = 3 };
 enum class Token { Out = 1, In = 9, Setup = 13 };
+
+constexpr unsigned NO_ADDRESS = 0x100;
 
 struct Packet {
     Token token = Token::In;
@@ -51,6 +54,7 @@ public:
     {
         return regs_[address - UFRML];
     }
+    void ram_read(unsigned address);
     void ram_written(unsigned address, unsigned old_value, unsigned value);
     void reset();
     void mistake(const std::string &text);
@@ -70,7 +74,16 @@ private:
     void update_interrupt();
     void write_ucon(uint8_t value);
     void write_uir(uint8_t value);
+    void endpoint_changed(unsigned endpoint);
+    void check_setup_refused();
+    void check_refused();
+    void check_suspend();
+    void check_stall_handled(unsigned endpoint);
+    void setup_seen(const std::vector<uint8_t> &data);
+    void expect_address();
+    bool at_rest() const;
     bool owned(unsigned address, std::string &what) const;
+    void armed(unsigned at, const Descriptor &d);
     bool endpoint_on(unsigned endpoint, bool in) const;
 
     uint8_t &reg(unsigned address)
@@ -80,6 +93,16 @@ private:
     uint8_t regs_[UEP0 + 16 - UFRML] = {};
     std::vector<uint8_t> fifo_; // USTAT entries, oldest first
     bool status_shown_ = false;
+    bool status_read_ = false; // USTAT was read since it shows this entry
+    bool idle_ = false;        // the bus has been quiet for 3 ms
+    unsigned highest_ = 0;     // the highest endpoint that is on
+    uint64_t last_pop_ = 0;    // cycle of the last TRNIF cleared
+    uint64_t last_setup_ = 0;
+    uint64_t idle_end_ = 0;   // cycle of the last activity after idleness
+    uint64_t clock_back_ = 0; // cycle from which ACTVIF can be cleared
+    unsigned wanted_address_ = NO_ADDRESS;  // of the last SET_ADDRESS
+    unsigned granted_address_ = NO_ADDRESS; // its status stage is over
+    unsigned address_ticket_ = 0;
     bool set_address_open_ = false; // SET_ADDRESS without its status stage
     bool reset_seen_ = false;       // a bus reset nobody has handled yet
 };

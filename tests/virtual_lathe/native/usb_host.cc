@@ -243,8 +243,10 @@ void UsbHost::finish()
     // packet; for OUT it has the data and only we do not know.
     if (answer_ == Handshake::Ack && !(in && lost))
         usb_engine().complete(current_);
-    if (in && lost)
+    if (in && lost) {
         usb_engine().host_error();
+        unacknowledged_ = true;
+    }
     if (lost && !in)
         answer_ = Handshake::None;
     counts.naks += answer_ == Handshake::Nak;
@@ -290,7 +292,9 @@ bool UsbHost::take_in(Pipe &pipe, std::deque<uint8_t> &sink)
 {
     if (current_.toggle != pipe.toggle) {
         counts.wrong_toggles++;
-        usb_engine().mistake("IN packet with the wrong data toggle");
+        if (!unacknowledged_)
+            usb_engine().mistake("IN packet with the wrong data toggle");
+        unacknowledged_ = false;
         return false;
     }
     sink.insert(sink.end(), current_.data.begin(), current_.data.end());

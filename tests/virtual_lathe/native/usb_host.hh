@@ -81,6 +81,7 @@ private:
     Packet current_;
     Handshake answer_ = Handshake::None;
     bool last_was_in_ = false;
+    bool unacknowledged_ = false; // an ACK of ours got lost on the bus
 };
 
 UsbHost &usb_host();

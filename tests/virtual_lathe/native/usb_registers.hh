@@ -37,7 +37,14 @@ enum Uep : uint8_t {
     EPCONDIS = 0x08,
     EPHSHK = 0x10
 };
-enum Bdstat : uint8_t { BSTALL = 0x04, DTSEN = 0x08, DTS = 0x40, UOWN = 0x80 };
+enum Bdstat : uint8_t {
+    BSTALL = 0x04,
+    DTSEN = 0x08,
+    INCDIS = 0x10,
+    KEN = 0x20,
+    DTS = 0x40,
+    UOWN = 0x80
+};
 constexpr unsigned RAM_FIRST = 0x400, RAM_LAST = 0x7FF;
 constexpr unsigned DESCRIPTOR_BYTES = 4, ENDPOINTS = 16;
 constexpr unsigned PACKET_MAX = 64;

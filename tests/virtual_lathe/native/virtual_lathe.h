@@ -97,6 +97,8 @@ struct vl_ram_write {
     uint32_t address, value, pc;
 };
 int vl_ram_writes(struct vl_ram_write *entries, int room);
+/* One byte per watched address, 1 = written since it is watched; no limit. */
+void vl_written(uint8_t flags[4096]);
 
 /* ---- Pins: pins.cc ------------------------------------------------------ */
 
@@ -144,9 +146,11 @@ enum vl_token { VL_OUT = 1, VL_IN = 9, VL_SETUP = 13 };
 enum vl_handshake { VL_NONE = 0, VL_ACK = 1, VL_NAK = 2, VL_STALL = 3 };
 /* Queues one transaction; vl_run() stops with VL_STOP_EVENT when it is over,
  * then vl_usb_result() gives the enum vl_handshake (VL_NONE: no answer), and
- * for IN the data and the toggle.  Before that it gives -1. */
+ * for IN the data and the toggle.  Before that it gives -1.  fresh says of an
+ * OUT that it was never sent before, so that dropping it is a mistake. */
 void vl_usb_submit(int token, unsigned address, unsigned endpoint,
-                   unsigned toggle, const uint8_t *data, unsigned count);
+                   unsigned toggle, const uint8_t *data, unsigned count,
+                   int fresh);
 int vl_usb_result(uint8_t data[64], unsigned *count, unsigned *toggle);
 
 /* The serial port: from vl_usb_open() on bulk OUT is sent as long as there is
@@ -168,6 +172,8 @@ struct vl_usb_counts {
 void vl_usb_counts(struct vl_usb_counts *counts);
 /* Text of the n-th mistake of the firmware; -1 when there are fewer. */
 int vl_usb_mistake(unsigned index, char *text, unsigned room);
+/* Adds one that only the host can see. */
+void vl_usb_report_mistake(const char *text);
 
 /* ---- Machine: machine.cc ------------------------------------------------- */
 

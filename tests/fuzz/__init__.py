@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nonsense for the firmware: structure-aware, seeded, repeatable."""

@@ -28,15 +28,15 @@ static uint8_t roughing; /* CUT_ALONG, CUT_FACING or CUT_PLUNGE */
 static uint8_t follows;  /* passes along the contour to come */
 static int16_t start_x;
 static int16_t end_z;
-static int16_t top;      /* largest radius left over the operation */
+static int16_t top; /* largest radius left over the operation */
 static uint16_t allowance;
 static int16_t from;        /* level 0 */
 static uint16_t step_depth; /* from level to level */
 static uint16_t deeper;     /* levels that take one step more */
 static uint16_t levels;
-static uint16_t level;      /* 1.. */
-static int16_t done;   /* in front of it everything is at its bottom */
-static int16_t last_e; /* of the stretch cut last */
+static uint16_t level; /* 1.. */
+static int16_t last_s; /* of the stretch cut last */
+static int16_t last_e;
 
 static void spread(int16_t to)
 {
@@ -102,7 +102,7 @@ static uint8_t begin_contour(void)
     int16_t lowest = from;
 
     roughing = CUT_ALONG;
-    done = cuts_start;
+    last_s = cuts_start;
     last_e = end_z;
     if (facing) {
         roughing = CUT_FACING;
@@ -198,31 +198,30 @@ static uint8_t next_facing(void)
     return 0;
 }
 
-static uint8_t stretch_at(uint16_t number)
+static uint8_t stretch_at(uint16_t number, int16_t z)
 {
-    return contour_stretch(level_at(number) - (int16_t)allowance, done);
+    return contour_stretch(level_at(number) - (int16_t)allowance, z);
 }
 
 /* Sets level and stretch of the next pass along Z. */
 static uint8_t next_stretch(void)
 {
-    if (level < levels && stretch_at(level + 1) && contour_s > last_e) {
+    int16_t above;
+
+    if (level < levels && stretch_at(level + 1, last_s) && contour_s > last_e) {
         level++;
         return 1;
     }
-    done = last_e;
     while (level != 0) {
-        if (stretch_at(level) && contour_contains) {
-            done = contour_e; /* it has been cut before its pockets */
+        above = NOWHERE;
+        if (level != 1) {
+            stretch_at(level - 1, last_s); /* the one that it lies in */
+            above = contour_e;
         }
-        last_e = NOWHERE;
-        contour_contains = 1;
-        if (level != 1 && stretch_at(level - 1)) {
-            last_e = contour_e;
-        }
-        if (contour_contains && stretch_at(level) && contour_s > last_e) {
+        if (stretch_at(level, last_e) && contour_s > above) {
             return 1;
         }
+        last_e = above;
         level--;
     }
     return 0;
@@ -241,12 +240,12 @@ static uint8_t next_along(void)
             cuts_rise = level_at(level - 1) + part_retract;
         }
         cuts_pass = level;
-        done = contour_s;
+        last_s = contour_s;
         last_e = contour_e;
         cuts_end = contour_e;
         cuts_x = level_at(level);
         v = cuts_x - (int16_t)allowance;
-        cuts_z = contour_material(v, done);
+        cuts_z = contour_material(v, last_s);
         if (cuts_z > last_e) {
             cuts_open = 0;
             if (contour_material(v, cuts_z + part_retract) <= cuts_z) {

@@ -164,7 +164,7 @@ def test_times_are_said_as_people_say_them(seconds: float, text: str) -> None:
 def test_the_parts_of_the_page_about_passes_are_cut_as_it_says() -> None:
     parts = Path(__file__).parents[2] / "docs" / "parts"
     disc = values(parts / "disc.toml")["list"]
-    assert [entry["role"] for entry in disc if entry.get("operation") == 2][:3] == ["facing"] * 3
+    assert [entry.get("role") for entry in disc if entry["operation"] == 2][:3] == ["facing"] * 3
     pockets = values(parts / "pockets.toml")["list"]
     roughed = [entry for entry in pockets if entry.get("role") == "roughing"]
     # The front rounding, the double pocket, its grounds from the front, the last pocket.

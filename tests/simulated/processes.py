@@ -65,10 +65,10 @@ def on_a_new_chip(test: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
-def branch(action: Callable[[], Result]) -> Result:
+def branch(action: Callable[[], Result], stuck_after: float = STUCK_S) -> Result:
     """Return ``action()``, called in a copy of this process; here nothing changes.
 
-    The result must be picklable.
+    The result must be picklable. ``stuck_after`` is in seconds of the wall's clock.
 
     Raises:
         BranchFailed: an exception came from there, or the process died or got stuck.
@@ -79,9 +79,9 @@ def branch(action: Callable[[], Result]) -> Result:
     child.start()
     sender.close()
     try:
-        if not receiver.poll(STUCK_S):
+        if not receiver.poll(stuck_after):
             child.kill()
-            raise BranchFailed(f"no result after {STUCK_S:g} s: the simulation is stuck")
+            raise BranchFailed(f"no result after {stuck_after:g} s: the simulation is stuck")
         good, result = receiver.recv()
     except EOFError:
         child.join()

@@ -140,8 +140,8 @@ def test_tools_and_cutting_data_are_told_again_only_when_they_change() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "field", "wanted"),
     [
-        ("feed", "50", "feed", round(50e6 / 7112 * 256 / 60)),
-        ("finish_feed", "50", "finish_feed", round(50e6 / 7112 * 256 / 60)),
+        ("feed", "50", "feed", round(50e6 / 7112 * 8 / 60)),
+        ("finish_feed", "50", "finish_feed", round(50e6 / 7112 * 8 / 60)),
         ("depth_of_cut", "0.5", "depth_of_cut", 70),
         ("finish_allowance", "0.1", "finish_allowance", 14),
         ("spindle", "1200", "spindle", 1200),

@@ -247,11 +247,9 @@ def test_every_verb_shows_an_example_in_its_help(tornillo: Tornillo) -> None:
         assert "Example" in tornillo(verb, "--help").stdout, verb
 
 
-def test_starting_the_command_imports_no_heavy_library() -> None:
-    code = (
-        "import sys, tornillo.cli; "
-        "print([n for n in ('serial', 'rich', 'matplotlib', 'numpy') if n in sys.modules])"
-    )
+def test_starting_the_command_imports_neither_heavy_libraries_nor_planning() -> None:
+    heavy = ("serial", "rich", "matplotlib", "numpy", "tornillo.planning", "tornillo.timing")
+    code = f"import sys, tornillo.cli; print([n for n in {heavy} if n in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
     assert result.stdout.decode().strip() == "[]"
 

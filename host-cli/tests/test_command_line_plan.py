@@ -88,7 +88,7 @@ def test_the_test_bar_takes_four_passes_of_a_twentieth_of_an_inch(test_bar: Path
 def test_columns_stand_under_their_headings(shaft: Path) -> None:
     lines = run(shaft).splitlines()
     end = lines[2].index("from z") + len("from z")
-    passes = [line for line in lines if "facing" in line or "plunge" in line]
+    passes = [line for line in lines if "roughing" in line or "plunge" in line]
     assert len(passes) > 4
     assert all(line[end - 1].isdigit() and line[end] == " " for line in passes)
 

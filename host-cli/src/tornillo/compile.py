@@ -7,10 +7,11 @@ from typing import NamedTuple
 from tornillo.finished import FinishedPart
 from tornillo.grid import Grid, path_segments
 from tornillo.image import FLAG_INCH, PartImage, Record, Segment, pack_segments
-from tornillo.material import Chain, Material, chain_of, plunge_chain
+from tornillo.material import Chain, chain_of
 from tornillo.operations import Contour, Operation, Pause, Plunge
 from tornillo.protocol import (
     CONTOUR_FACING,
+    FEED_MIN,
     IMAGE_FORMAT,
     NAME_LENGTH,
     POSITION_MAX,
@@ -23,7 +24,7 @@ from tornillo.protocol import (
     ToolRecord,
 )
 from tornillo.protocol_texts import REFUSAL_TEXTS
-from tornillo.roughing import Passes, fewer_facing, never_falls
+from tornillo.roughing import never_falls
 from tornillo.stock import Stock
 from tornillo.tip import Fault, Reach, edge_faults, fault, tip_of
 from tornillo.tool_records import tool_record
@@ -100,7 +101,6 @@ class _Compiler:
         self.scale = scale
         unit = NM_PER_UNIT[scale.units]
         self.grid = Grid(unit / header.step_z_nm, unit / header.step_x_nm)
-        self.material = Material(header.stock_radius, header.stock_front)
         self.cuttings: dict[int, Cutting] = {}
         self.free_fronts: dict[int, bool] = {}
         self.records: list[Record] = []
@@ -171,9 +171,10 @@ class _Compiler:
                 continue
             pause = isinstance(operation.shape, Pause)
             cut = cut if pause else operation
-            facing = self._facing(operation)
+            tool = tools[cut.tool.name]
+            facing = self._facing(operation, tool)
             if not pause or not self.records:
-                self._state(tools[cut.tool.name], Origin("tool", cut))
+                self._state(tool, Origin("tool", cut))
                 self._state(self._cut_record(cut, facing), Origin("cut", cut))
             self._emit(self._record(operation, facing), Origin("operation", operation))
         image = PartImage(self.header, tuple(self.records))
@@ -230,11 +231,12 @@ class _Compiler:
         if isinstance(shape, Pause):
             return PauseRecord(PAUSES.index(operation.type), shape.message.encode("ascii"))
         if isinstance(shape, Plunge):
-            plunge = self._plunge(operation, shape)
-            self.material.cut(plunge_chain(plunge, self.scale.z_steps(operation.tool.width)))
-            return plunge
+            return self._plunge(operation, shape)
+        return self._contour(operation, facing)
+
+    def _contour(self, operation: Operation, facing: bool) -> ContourRecord:
+        """The path of a contour."""
         cutting = self.cuttings[operation.position]
-        self.material.cut(chain_of(*cutting, facing))
         kind = KINDS.index(operation.type) | (CONTOUR_FACING if facing else 0)
         return ContourRecord(kind, cutting.z, cutting.x, pack_segments(cutting.segments))
 
@@ -250,7 +252,7 @@ class _Compiler:
             x = max(-nose, min(0, round(self._least_x(operation) * self.grid.x)))
         return PlungeRecord(PLUNGES.index(operation.type), high, low, x)
 
-    def _facing(self, operation: Operation) -> bool:
+    def _facing(self, operation: Operation, tool: ToolRecord) -> bool:
         """Whether a contour is roughed in facing direction."""
         if not isinstance(operation.shape, Contour):
             return False
@@ -260,14 +262,21 @@ class _Compiler:
             return True
         if operation.roughing == "along" or not self.free_fronts[operation.position]:
             return False
-        scale, cut = self.scale, operation.cut
-        passes = Passes(
-            depth_x=scale.x_steps(cut.depth_of_cut),
-            depth_z=scale.z_steps(cut.depth_of_cut),
-            allowance=scale.x_steps(cut.finish_allowance),
-            below=scale.x_steps(operation.tool.nose_radius),
-        )
-        return never_falls(chain) and fewer_facing(chain, self.material, passes)
+        return never_falls(chain) and self._faster_facing(operation, tool)
+
+    def _faster_facing(self, operation: Operation, tool: ToolRecord) -> bool:
+        """Whether roughing in facing direction takes less time.
+
+        With cutting data that the rules refuse anyway there is nothing to compare.
+        """
+        from tornillo.roughing_time import facing_is_shorter
+
+        along, facing = (self._cut_record(operation, way) for way in (False, True))
+        for cut in (along, facing):
+            if cut.depth_of_cut < 1 or min(cut.feed, cut.finish_feed) < FEED_MIN:
+                return False
+        records = (*self.records, tool, along)
+        return facing_is_shorter(self.header, records, self._contour(operation, True), facing)
 
     def _must_face(self, operation: Operation, chain: Chain) -> None:
         """Note why a contour cannot be roughed in facing direction, if so."""

@@ -1,19 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which way of roughing takes fewer passes: along Z, or in facing direction."""
-
-from typing import NamedTuple
+"""Whether a contour can be roughed in facing direction at all; roughing_time.py: whether to."""
 
 from tornillo.image import SegmentKind
-from tornillo.material import Chain, Material
-
-
-class Passes(NamedTuple):
-    """What decides about the number of passes, in steps."""
-
-    depth_x: int
-    depth_z: int
-    allowance: int
-    below: int
+from tornillo.material import Chain
 
 
 def never_falls(chain: Chain) -> bool:
@@ -28,20 +17,3 @@ def never_falls(chain: Chain) -> bool:
 def _front_or_back(zs: int, ze: int, zc: int) -> bool:
     """Whether an arc lies on one side of its centre."""
     return not zs > zc > ze
-
-
-def fewer_facing(chain: Chain, material: Material, passes: Passes) -> bool:
-    """Whether roughing in facing direction takes fewer passes."""
-    if passes.depth_x < 1 or passes.depth_z < 1:
-        return False
-    top = material.highest(chain.z, chain.z_end, passes.below)
-    allowance = min(passes.allowance, max(0, top - chain.lowest))
-    along = _count(top - chain.lowest - allowance, passes.depth_x)
-    front = material.free_end(chain.x, material.stock_front)
-    facing = _count(front - chain.z_end, passes.depth_z)
-    return 0 < facing < along
-
-
-def _count(height: int, depth: int) -> int:
-    """Passes of at most `depth` for `height`."""
-    return -(-height // depth) if height > 0 else 0

@@ -94,9 +94,7 @@ def struct(part: Layout, before: str = "") -> str:
     return '"<' + before + "".join(field.struct_code for field in part.fields) + '"'
 
 
-def record(
-    name: str, purpose: str, part: Layout, head: tuple[str, ...] = ()
-) -> list[str]:
+def record(name: str, purpose: str, part: Layout, head: tuple[str, ...] = ()) -> list[str]:
     """A NamedTuple for a layout, after the numbers of `head`."""
     first, _, rest = purpose.partition(". ")
     lines = ["", "", f"class {name}(NamedTuple):"]
@@ -131,9 +129,7 @@ def layouts(model: Model) -> list[str]:
         "OPERATION_RECORDS = {",
     ]
     for name, part in model.operations.items():
-        lines.append(
-            f"    OperationType.{name.upper()}: Struct({struct(part, RECORD_HEAD_CODE)}),"
-        )
+        lines.append(f"    OperationType.{name.upper()}: Struct({struct(part, RECORD_HEAD_CODE)}),")
     lines.append("}")
     for command in model.commands:
         if command.response.fields and not command.response.is_open:

@@ -275,7 +275,6 @@ CASES: dict[Refusal, list[Case]] = {
         plunge(z_low=-699),
         plunge(z_high=-801),
         plunge(x=1000),
-
     ],
     Refusal.ARC: [
         one(contour(100, 500, arc(CONVEX, -10, 3, -1, 0))),

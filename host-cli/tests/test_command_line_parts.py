@@ -15,7 +15,7 @@ from scripted_chip import ScriptedChip, ScriptedPort
 
 from tornillo import __version__
 from tornillo.cli import main
-from tornillo.protocol import Command, ErrorCode, Refusal, SettingId
+from tornillo.protocol import PART_SLOTS, Command, ErrorCode, Refusal, SettingId
 
 
 def part_file(folder: Path, source: Path, old: str, new: str) -> Path:
@@ -30,8 +30,8 @@ def part_file(folder: Path, source: Path, old: str, new: str) -> Path:
 def test_check_accepts_the_examples(tornillo: Tornillo, test_bar: Path, stepped_pin: Path) -> None:
     result = tornillo("check", test_bar)
     assert (result.exit_code, result.stderr) == (0, "")
-    assert result.stdout == "test-bar: 1 operation, 95 bytes, fits otmt-co\n"
-    assert "4 operations, 134 bytes" in tornillo("check", stepped_pin).stdout
+    assert result.stdout == "test-bar: 1 operation, 91 bytes, fits otmt-co\n"
+    assert "4 operations, 130 bytes" in tornillo("check", stepped_pin).stdout
 
 
 def test_check_tells_every_problem_and_exits_with_1(
@@ -67,8 +67,8 @@ def test_upload_stores_verifies_and_says_where(
 ) -> None:
     result = tornillo("upload", test_bar)
     assert result.exit_code == 0
-    assert result.stdout == "test-bar is stored in slot 0, 95 bytes, verified\n"
-    assert len(chip.slots[0]) == 95
+    assert result.stdout == "test-bar is stored in slot 0, 91 bytes, verified\n"
+    assert len(chip.slots[0]) == 91
 
 
 def test_upload_uses_the_step_sizes_of_the_chip(
@@ -117,24 +117,24 @@ def test_upload_tells_the_line_of_what_the_chip_refuses(
 def test_upload_to_a_full_store_says_how_to_make_room(
     tornillo: Tornillo, chip: ScriptedChip, test_bar: Path
 ) -> None:
-    for _ in range(16):
+    for _ in range(PART_SLOTS):
         assert tornillo("upload", test_bar).exit_code == 0
     result = tornillo("upload", test_bar)
     assert result.exit_code == 1
     assert "no room for one more part" in result.stderr
     assert "tornillo delete" in result.stderr
-    assert len(chip.slots) == 16
+    assert len(chip.slots) == PART_SLOTS
 
 
 def test_parts_are_listed_for_people_and_for_scripts(tornillo: Tornillo, test_bar: Path) -> None:
-    assert tornillo("parts").stdout == "no parts stored, all 16 units of the store are free\n"
+    assert tornillo("parts").stdout == "no parts stored, all 12 units of the store are free\n"
     assert json.loads(tornillo("parts", "--json").stdout) == []
     tornillo("upload", test_bar)
     tornillo("select", "test-bar")
     listed = tornillo("parts").stdout
     assert "test-bar" in listed
     assert "selected" in listed
-    assert "15 of 16 units of the store are free" in listed
+    assert "11 of 12 units of the store are free" in listed
     [part] = json.loads(tornillo("parts", "--json").stdout)
     assert (part["slot"], part["name"], part["selected"]) == (0, "test-bar", True)
 
@@ -247,11 +247,9 @@ def test_every_verb_shows_an_example_in_its_help(tornillo: Tornillo) -> None:
         assert "Example" in tornillo(verb, "--help").stdout, verb
 
 
-def test_starting_the_command_imports_no_heavy_library() -> None:
-    code = (
-        "import sys, tornillo.cli; "
-        "print([n for n in ('serial', 'rich', 'matplotlib', 'numpy') if n in sys.modules])"
-    )
+def test_starting_the_command_imports_neither_heavy_libraries_nor_planning() -> None:
+    heavy = ("serial", "rich", "matplotlib", "numpy", "tornillo.planning", "tornillo.timing")
+    code = f"import sys, tornillo.cli; print([n for n in {heavy} if n in sys.modules])"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
     assert result.stdout.decode().strip() == "[]"
 

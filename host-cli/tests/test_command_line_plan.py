@@ -88,7 +88,7 @@ def test_the_test_bar_takes_four_passes_of_a_twentieth_of_an_inch(test_bar: Path
 def test_columns_stand_under_their_headings(shaft: Path) -> None:
     lines = run(shaft).splitlines()
     end = lines[2].index("from z") + len("from z")
-    passes = [line for line in lines if "roughing" in line or "facing" in line or "plunge" in line]
+    passes = [line for line in lines if "roughing" in line or "plunge" in line]
     assert len(passes) > 4
     assert all(line[end - 1].isdigit() and line[end] == " " for line in passes)
 
@@ -159,16 +159,3 @@ def test_every_step_of_the_plan_has_a_line(shaft: Path) -> None:
 )
 def test_times_are_said_as_people_say_them(seconds: float, text: str) -> None:
     assert show_time(seconds) == text
-
-
-def test_the_parts_of_the_page_about_passes_are_cut_as_it_says() -> None:
-    parts = Path(__file__).parents[2] / "docs" / "parts"
-    disc = values(parts / "disc.toml")["list"]
-    assert [entry.get("role") for entry in disc if entry["operation"] == 2][:3] == ["facing"] * 3
-    pockets = values(parts / "pockets.toml")["list"]
-    roughed = [entry for entry in pockets if entry.get("role") == "roughing"]
-    # The front rounding, the double pocket, its grounds from the front, the last pocket.
-    fronts = [entry["from"]["z"] for entry in roughed]
-    assert fronts[:4] == [fronts[0]] * 4
-    assert fronts[4:] == sorted(fronts[4:], reverse=True)
-    assert roughed[8]["from"]["diameter"] > roughed[7]["from"]["diameter"]

@@ -44,7 +44,7 @@ FREE = TOOL._replace(back=65535)
 
 def test_the_good_image_is_accepted_and_has_the_documented_size() -> None:
     data = GOOD.pack()
-    assert len(data) == GOOD.size == 32 + 30 + 20 + 13 + 13
+    assert len(data) == GOOD.size == 32 + 30 + 16 + 13 + 13
     assert verdict(data, MACHINE) is None
     assert PartImage.unpack(data) == GOOD
     assert (GOOD.name, GOOD.inch, len(GOOD.operations)) == ("pin", False, 2)
@@ -146,7 +146,7 @@ def test_checking_tells_every_broken_rule_and_stops_at_senseless_stock() -> None
 def test_a_part_that_is_too_long_is_told_with_its_size() -> None:
     long = PartImage(HEADER, (TOOL, CUT, FACE, contour(100, 600, *[line(-1, 0)] * 500)))
     first = next(check(long, Scale("mm", MACHINE)))
-    assert (first.refusal, first.detail) == (Refusal.LENGTH, "2603 bytes, at most 2496")
+    assert (first.refusal, first.detail) == (Refusal.LENGTH, "2599 bytes, at most 2496")
 
 
 def describe(violation: Violation | None) -> object:

@@ -36,7 +36,7 @@ def test_an_upload_is_stored_byte_for_byte_and_reports_its_progress(
     progress: list[tuple[int, int]] = []
     slot = lathe.upload(image, lambda sent, total: progress.append((sent, total)))
     assert chip.slots == {slot: image}
-    assert progress == [(32, 95), (64, 95), (95, 95)]
+    assert progress == [(32, 91), (64, 91), (91, 91)]
     assert lathe.read(slot) == image
 
 
@@ -67,7 +67,7 @@ def test_an_image_damaged_on_purpose_is_refused_by_the_chip_with_its_reason(
     lathe: Lathe, chip: ScriptedChip, image: bytes
 ) -> None:
     damaged = bytearray(image)
-    damaged[82] = 99
+    damaged[32 + 30 + 16] = 99
     with pytest.raises(ChipError) as caught:
         lathe.upload(bytes(damaged))
     assert caught.value.reason is Refusal.OPERATION_TYPE
@@ -84,7 +84,7 @@ def test_stored_parts_are_listed_found_selected_and_deleted(lathe: Lathe, image:
         (first, "test-bar", False),
         (second, "test-bar", True),
     ]
-    assert (parts[0].length, parts[0].crc, parts[0].operations) == (95, crc16(image), 1)
+    assert (parts[0].length, parts[0].crc, parts[0].operations) == (91, crc16(image), 1)
     assert lathe.find("test-bar").slot == second
     assert lathe.find("0").slot == first
     lathe.delete(second)
@@ -106,8 +106,8 @@ def test_a_long_part_takes_several_units_side_by_side(lathe: Lathe, machine: Mac
     )
     image = Part.parse(long).image(machine)
     first, second = lathe.upload(image), lathe.upload(image)
-    assert [part.units for part in lathe.parts()] == [2, 2]
-    assert (first, second) == (0, 2)
+    assert [part.units for part in lathe.parts()] == [4, 4]
+    assert (first, second) == (0, 4)
     assert lathe.image(second).pack() == image
 
 

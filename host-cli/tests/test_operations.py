@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every type of operation: what it becomes, and how what cannot be is refused."""
 
+from dataclasses import replace
+
 import pytest
 from part_texts import HEAD, TOOLS, operation, profile, refusal, segments, steps
 
+from tornillo.errors import PartError
 from tornillo.image import SegmentKind
 from tornillo.machine import Machine
 from tornillo.part import Part
@@ -140,8 +143,8 @@ def test_tools_and_cutting_data_are_told_again_only_when_they_change() -> None:
 @pytest.mark.parametrize(
     ("key", "value", "field", "wanted"),
     [
-        ("feed", "50", "feed", round(50e6 / 7112 * 256 / 60)),
-        ("finish_feed", "50", "finish_feed", round(50e6 / 7112 * 256 / 60)),
+        ("feed", "50", "feed", round(50e6 / 7112 * 8 / 60)),
+        ("finish_feed", "50", "finish_feed", round(50e6 / 7112 * 8 / 60)),
         ("depth_of_cut", "0.5", "depth_of_cut", 70),
         ("finish_allowance", "0.1", "finish_allowance", 14),
         ("spindle", "1200", "spindle", 1200),
@@ -197,17 +200,45 @@ def test_order_auto_cuts_faces_cylinders_cones_arcs_then_the_others() -> None:
     ("length", "diameter", "how", "facing"),
     [
         (-10, 15, "", False),
+        (-1.1, 14.2, "", False),  # though in facing direction it takes fewer passes
+        (-0.8, 18.6, "", True),  # though along Z it takes no more passes
         (-1, 4, "", True),
         (-1, 4, 'roughing = "along"', False),
         (-10, 15, 'roughing = "facing"', True),
         (-10, 15, 'roughing = "shortest"', False),
     ],
 )
-def test_roughing_takes_the_way_with_fewer_passes_or_the_one_it_is_told(
-    length: int, diameter: int, how: str, facing: bool
+def test_roughing_takes_the_shorter_way_or_the_one_it_is_told(
+    length: float, diameter: float, how: str, facing: bool
 ) -> None:
     text = operation("cylinder", f"z = [0, {length}]\ndiameter = {diameter}\n{how}")
     assert bool(contour_of(text).kind & 0x80) is facing
+
+
+def test_what_is_already_cut_decides_about_the_way_of_roughing() -> None:
+    first = operation("cylinder", 'z = [0, -30]\ndiameter = 9\nroughing = "along"')
+    second = operation("cylinder", "z = [0, -2]\ndiameter = 8")
+    assert contour_of(second).kind & 0x80
+    assert not contour_of(first, second).kind & 0x80
+
+
+@pytest.mark.parametrize(("step_z", "facing"), [(3556, True), (7112, False), (14224, False)])
+def test_a_step_along_another_size_than_across_is_allowed_for(step_z: int, facing: bool) -> None:
+    machine = replace(Machine.load(), step_z_nm=step_z)
+    text = HEAD + operation("cylinder", "z = [0, -1.1]\ndiameter = 14.2")
+    image = Part.parse(text).steps(machine)
+    cut, record = image.records[1:]
+    assert isinstance(cut, CutRecord)
+    assert isinstance(record, ContourRecord)
+    assert bool(record.kind & 0x80) is facing
+    assert cut.depth_of_cut == round(1e6 / (step_z if facing else 7112))
+
+
+@pytest.mark.parametrize("bad", ["depth_of_cut = 0.001", "feed = 0.1", "finish_feed = 0.1"])
+def test_what_the_rules_refuse_is_not_timed(bad: str, machine: Machine) -> None:
+    text = HEAD + operation("cylinder", f"z = [0, -1]\ndiameter = 4\n{bad}")
+    with pytest.raises(PartError, match=r"depth of cut|a feed is too slow"):
+        Part.parse(text).check(machine)
 
 
 def test_roughing_does_not_cut_in_facing_direction_what_is_in_front() -> None:

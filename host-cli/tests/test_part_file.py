@@ -69,7 +69,7 @@ def test_the_test_bar_is_the_one_of_the_paper(test_bar: Path, machine: Machine) 
     _, cut, cylinder = image.records
     assert isinstance(cut, CutRecord)
     assert isinstance(cylinder, ContourRecord)
-    assert (image.header.stock_radius, cut.depth_of_cut, cut.feed) == (1786, 179, 137143)
+    assert (image.header.stock_radius, cut.depth_of_cut, cut.feed) == (1786, 179, 4286)
     [line] = unpack_segments(cylinder.segments)
     assert (cylinder.z, cylinder.x, line.dz, line.dx) == (0, 1071, -3571, 0)
 
@@ -163,7 +163,8 @@ def test_what_cannot_be_understood_is_refused_with_place_and_remedy(
         ("finish_feed = 60.0", "finish_feed = 1.0", "the machine feeds 1.71 mm/min to", "range"),
         ("retract = 0.3", "retract = 0.001", "bar.toml:15: the retract is too small", "one step"),
         ("diameter = 20.0", "diameter = 50.5", "bar.toml:6: the slides cannot go that far", "zero"),
-        ("allowance = 0.5", "allowance = 57.0", "bar.toml:8: the slides cannot go that", "zero"),
+        ("allowance = 0.5", "allowance = 57.0", "bar.toml:8: the stock has no sensible", "stock"),
+        ("allowance = 0.5", "allowance = 56.5", "bar.toml:8: the slides cannot go that", "zero"),
         (
             "length = 40.0",
             "length = 10.1",

@@ -11,6 +11,7 @@ from tornillo.material import Chain, chain_of
 from tornillo.operations import Contour, Operation, Pause, Plunge
 from tornillo.protocol import (
     CONTOUR_FACING,
+    FEED_MIN,
     IMAGE_FORMAT,
     NAME_LENGTH,
     POSITION_MAX,
@@ -24,7 +25,6 @@ from tornillo.protocol import (
 )
 from tornillo.protocol_texts import REFUSAL_TEXTS
 from tornillo.roughing import never_falls
-from tornillo.roughing_time import facing_is_shorter
 from tornillo.stock import Stock
 from tornillo.tip import Fault, Reach, edge_faults, fault, tip_of
 from tornillo.tool_records import tool_record
@@ -171,9 +171,10 @@ class _Compiler:
                 continue
             pause = isinstance(operation.shape, Pause)
             cut = cut if pause else operation
-            facing = self._facing(operation, tools)
+            tool = tools[cut.tool.name]
+            facing = self._facing(operation, tool)
             if not pause or not self.records:
-                self._state(tools[cut.tool.name], Origin("tool", cut))
+                self._state(tool, Origin("tool", cut))
                 self._state(self._cut_record(cut, facing), Origin("cut", cut))
             self._emit(self._record(operation, facing), Origin("operation", operation))
         image = PartImage(self.header, tuple(self.records))
@@ -231,10 +232,10 @@ class _Compiler:
             return PauseRecord(PAUSES.index(operation.type), shape.message.encode("ascii"))
         if isinstance(shape, Plunge):
             return self._plunge(operation, shape)
-        return self._contour_record(operation, facing)
+        return self._contour(operation, facing)
 
-    def _contour_record(self, operation: Operation, facing: bool) -> ContourRecord:
-        """A contour that is roughed in one direction or the other."""
+    def _contour(self, operation: Operation, facing: bool) -> ContourRecord:
+        """The path of a contour."""
         cutting = self.cuttings[operation.position]
         kind = KINDS.index(operation.type) | (CONTOUR_FACING if facing else 0)
         return ContourRecord(kind, cutting.z, cutting.x, pack_segments(cutting.segments))
@@ -251,7 +252,7 @@ class _Compiler:
             x = max(-nose, min(0, round(self._least_x(operation) * self.grid.x)))
         return PlungeRecord(PLUNGES.index(operation.type), high, low, x)
 
-    def _facing(self, operation: Operation, tools: dict[str, ToolRecord]) -> bool:
+    def _facing(self, operation: Operation, tool: ToolRecord) -> bool:
         """Whether a contour is roughed in facing direction."""
         if not isinstance(operation.shape, Contour):
             return False
@@ -261,11 +262,21 @@ class _Compiler:
             return True
         if operation.roughing == "along" or not self.free_fronts[operation.position]:
             return False
-        cut = self._cut_record(operation, facing=False)
-        if not never_falls(chain) or not cut.depth_of_cut:
-            return False
-        before = (*self.records, tools[operation.tool.name], cut)
-        return facing_is_shorter(self.header, before, self._contour_record(operation, False))
+        return never_falls(chain) and self._faster_facing(operation, tool)
+
+    def _faster_facing(self, operation: Operation, tool: ToolRecord) -> bool:
+        """Whether roughing in facing direction takes less time.
+
+        With cutting data that the rules refuse anyway there is nothing to compare.
+        """
+        from tornillo.roughing_time import facing_is_shorter
+
+        along, facing = (self._cut_record(operation, way) for way in (False, True))
+        for cut in (along, facing):
+            if cut.depth_of_cut < 1 or min(cut.feed, cut.finish_feed) < FEED_MIN:
+                return False
+        records = (*self.records, tool, along)
+        return facing_is_shorter(self.header, records, self._contour(operation, True), facing)
 
     def _must_face(self, operation: Operation, chain: Chain) -> None:
         """Note why a contour cannot be roughed in facing direction, if so."""

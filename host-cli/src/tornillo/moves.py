@@ -2,7 +2,7 @@
 """What a plan consists of: moves, the passes they belong to, and the stops in between.
 
 All positions are (z, x) in steps of the part, x a radius, for the tool in use then. Feeds are
-1/256 step/s along the path, as in the part image.
+1/8 step/s along the path, as in the part image.
 """
 
 from collections.abc import Iterator

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be roughed in facing direction."""
+"""Whether a contour can be roughed in facing direction at all; roughing_time.py: whether to."""
 
 from tornillo.image import SegmentKind
 from tornillo.material import Chain

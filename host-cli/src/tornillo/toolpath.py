@@ -66,15 +66,15 @@ class Toolpath:
             self.rapid(z, self.x)
 
     def feed_x(self, x: int, feed: int) -> None:
-        """X at a feed, 1/256 step/s."""
+        """X at a feed, 1/8 step/s."""
         self._go(self.z, x, feed)
 
     def feed_z(self, z: int, feed: int) -> None:
-        """Z at a feed, 1/256 step/s."""
+        """Z at a feed, 1/8 step/s."""
         self._go(z, self.x, feed)
 
     def follow(self, segments: bytes, feed: int) -> None:
-        """The segments of a contour from here on, at a feed, 1/256 step/s along them."""
+        """The segments of a contour from here on, at a feed, 1/8 step/s along them."""
         for segment in unpack_segments(segments):
             start = self.z, self.x
             self.z, self.x = self.z + segment.dz, self.x + segment.dx

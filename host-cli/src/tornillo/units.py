@@ -35,7 +35,7 @@ class Scale:
         return round(length * NM_PER_UNIT[self.units] / self.machine.step_z_nm)
 
     def feed(self, per_minute: float) -> int:
-        """A feed in 1/256 step/s."""
+        """A feed in 1/8 step/s."""
         steps_per_second = per_minute * NM_PER_UNIT[self.units] / self.machine.step_z_nm
         return round(steps_per_second * FEED_UNIT / SECONDS_PER_MINUTE)
 
@@ -48,7 +48,7 @@ class Scale:
         return z_steps * self.machine.step_z_nm / NM_PER_UNIT[self.units]
 
     def per_minute(self, feed: int) -> float:
-        """A feed in units per minute from 1/256 step/s."""
+        """A feed in units per minute from 1/8 step/s."""
         per_second = feed * self.machine.step_z_nm / NM_PER_UNIT[self.units] / FEED_UNIT
         return per_second * SECONDS_PER_MINUTE
 

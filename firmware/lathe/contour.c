@@ -240,7 +240,7 @@ int16_t contour_highest(int16_t z_high, int16_t z_low)
     int16_t high = part_stock_radius;
 
     while (low < high) { /* 15 times at most */
-        int16_t middle = (low + high) >> 1;
+        int16_t middle = low + ((uint16_t)(high - low) >> 1);
 
         path_make();
         if (contour_material(middle, z_high) <= z_low) {

@@ -178,7 +178,7 @@ static uint8_t next_facing(void)
         high = top;
         while (low < high) {
             path_make();
-            middle = (low + high) >> 1;
+            middle = low + ((uint16_t)(high - low) >> 1);
             contour_stretch(middle, FARTHEST);
             if (contour_e <= cuts_z) {
                 high = middle;

@@ -265,6 +265,9 @@ static uint8_t check_arc(void)
         return REFUSAL_ARC;
     }
     if (contour_split) {
+        if (part_kind & CONTOUR_FACING) {
+            return REFUSAL_DIRECTION; /* it falls on one side */
+        }
         place_x = contour_xe;
         place_z = contour_ze;
         reason = check_next(contour_arc == SEGMENT_ARC_CW);
@@ -419,7 +422,7 @@ static uint8_t check_record(uint8_t number)
         }
         return part_kind > 1 ? REFUSAL_FORMAT : 0;
     case OPERATION_CONTOUR:
-        if (part_size <= OPERATION_CONTOUR_SEGMENTS_AT) {
+        if (part_size < OPERATION_CONTOUR_SEGMENTS_AT) {
             break;
         }
         return check_contour();
@@ -452,13 +455,13 @@ static uint8_t check_records(void)
         }
         lowest = part_stock_radius;
         left -= part_size;
-        reason = check_record(number);
+        reason = check_record(number); /* comes back to this record */
         contour_own += part_size;
         if (reason != 0) {
             return reason;
         }
-        if (part_type >= OPERATION_PAUSE) {
-            operations++;
+        if (part_type >= OPERATION_PAUSE && operations <= OPERATIONS_MAX) {
+            operations++; /* too many are never the right number */
         }
         if (number < 2) {
             number++;

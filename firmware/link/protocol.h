@@ -431,7 +431,8 @@
 #define REFUSAL_BACK_EDGE                   20
 /* a segment rises more steeply than front of the tool */
 #define REFUSAL_FRONT_EDGE                  21
-/* dz above 0, or x gets smaller in a contour roughed in facing direction */
+/* dz above 0, or x gets smaller somewhere in a contour roughed in facing
+ * direction */
 #define REFUSAL_DIRECTION                   22
 /* spindle is neither 0 nor between the settings spindle_min and spindle_max */
 #define REFUSAL_SPINDLE                     23

@@ -34,7 +34,7 @@ HEADER = ImageHeader(
 )
 TOOL = ToolRecord(0, b"turning".ljust(12, b"\0"), 400, 57, 0, 256, SLOPE_ANY, 0, 0)
 PARTING = ToolRecord(1, b"parting".ljust(12, b"\0"), 0, 0, 200, 148, SLOPE_ANY, 0, 0)
-CUT = CutRecord(0, 100, 10, 100_000, 50_000, 0, 0)
+CUT = CutRecord(0, 100, 10, 3125, 1562, 0, 0)
 LINE, CONVEX, CONCAVE = SegmentKind
 
 

@@ -74,7 +74,7 @@ def test_a_broken_rule_is_answered_with_reason_and_operation(refusal: Refusal, n
         header(stock_front=7920),
         header(retract=1),
         image(TOOL, CUT._replace(depth_of_cut=1000, finish_allowance=1000), FACE),
-        image(TOOL, CUT._replace(feed=1024, finish_feed=256_000), FACE),
+        image(TOOL, CUT._replace(feed=32, finish_feed=8000), FACE),
         image(TOOL, CUT._replace(kind=9, spindle=3800, peck=65535), FACE),
         image(TOOL._replace(kind=15, offset_x=2535, offset_z=7820), CUT, FACE),
         cut(contour(99, 999, line(0, 1), kind=0x80)),

@@ -35,7 +35,7 @@ PRESS_TIMEOUT_S = 0.1
 LOOK_CYCLES, HOLD_LOOK_CYCLES = 1_200, 120
 # The chip filters its inputs for 4 ms.
 RELEASE_CYCLES = 72_000
-HOLD_AFTER_CYCLES = 24_000
+HOLD_AFTER_CYCLES = 14_000
 BOOT_S = 0.02
 RATE_UNIT = 256
 FIELD_BYTES = {"int16_t": 2, "uint16_t": 2, "int32_t": 4, "uint32_t": 4, "uint8_t": 1}
@@ -103,9 +103,12 @@ class Rig:
         return Lathe(SerialPort(self.host))
 
     def _store_part(self) -> None:
-        """Upload a part: without one the chip has nothing to run."""
+        """Upload a part: without one the chip has nothing to run.
+
+        One that takes the chip no time: it must not compute passes while it answers.
+        """
         self._plug()
-        self.connect().upload(little_pin.image("harness"))
+        self.connect().upload(little_pin.image("harness", (little_pin.pause(),)))
         self.host.unplug()
         self.chip.set_variable("machine_homed", 1)
 
@@ -151,6 +154,8 @@ class Rig:
         self.asked.append(self.chip.cycle)
         if segment is not None:
             self._describe(segment)
+        else:
+            self.chip.set_variable("passes_more", 0)  # nor is this the way to a pause
         self.chip.poke(WREG, int(segment is not None))
         status = self.chip.peek(STATUS)
         self.chip.poke(STATUS, status & ~ZERO if segment is not None else status | ZERO)
@@ -280,7 +285,7 @@ class Rig:
         return State(self.chip.variable("machine_state"))
 
     def start_and_hold(self, chain: Sequence[Segment]) -> None:
-        """Press RUN and, 2 ms later, HOLD: the chip takes notice of it before the first step."""
+        """Press RUN and, 1.2 ms later, HOLD: the chip takes notice of it before the first step."""
         self.run_to(self._released + RELEASE_CYCLES)
         self.chip.drive(RUN_PIN, Drive.LOW)
         self.run_to(self.chip.cycle + HOLD_AFTER_CYCLES)

@@ -29,7 +29,10 @@ from tornillo.protocol import (
     OPERATIONS_MAX,
     PART_IMAGE_MAX,
     POSITION_MAX,
+    RETRACT_MAX,
     SPRING_MAX,
+    STOCK_FRONT_MAX,
+    WIDTH_MAX,
     ContourRecord,
     CutRecord,
     ImageHeader,
@@ -45,6 +48,7 @@ from tornillo.units import Scale
 NAME = re.compile(rb"[a-z0-9-]{1,16}\0*")
 TOOL_KIND_MAX = 15
 PAUSE_KIND_MAX = 1
+FIELD_MAX = 0xFFFF
 FIRST_TYPES = (OperationType.TOOL, OperationType.CUT)
 
 
@@ -166,7 +170,7 @@ def header_rules(header: ImageHeader, scale: Scale) -> Iterator[Violation]:
     yield from (broken(Refusal.STOCK, *found) for found in _stock(header, scale))
     if not 1 <= header.operation_count <= OPERATIONS_MAX:
         yield broken(Refusal.OPERATION_COUNT, "operation", f"{header.operation_count} operations")
-    if not 1 <= header.retract <= POSITION_MAX:
+    if not 1 <= header.retract <= RETRACT_MAX:
         yield broken(Refusal.RETRACT, "cut.retract", f"{header.retract} steps")
     yield from (broken(Refusal.OUTSIDE_TRAVEL, *found) for found in _clear(header, scale, 0, 0))
 
@@ -177,7 +181,7 @@ def _stock(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]]:
         yield "stock.diameter", scale.show_diameter(header.stock_radius)
     if not 1 <= header.stock_length <= POSITION_MAX:
         yield "stock.length", f"length {scale.show(scale.length(header.stock_length))}"
-    elif not 0 <= header.stock_front <= POSITION_MAX - header.stock_length:
+    if not 0 <= header.stock_front <= STOCK_FRONT_MAX:
         yield "stock.allowance", f"allowance {scale.show(scale.length(header.stock_front))}"
 
 
@@ -207,7 +211,12 @@ def _tool_rules(tool: ToolRecord, header: ImageHeader, scale: Scale) -> Iterator
     """The rules of TOOL."""
     if not 0 <= tool.kind <= TOOL_KIND_MAX:
         yield Found(Refusal.FORMAT, "tool", f"tool number {tool.kind}")
-    if tool.offset_x or tool.offset_z:
+    if tool.width > WIDTH_MAX:
+        yield Found(Refusal.FORMAT, "width", f"{tool.width} steps, at most {WIDTH_MAX}")
+    zeros = scale.machine.zero_x + tool.offset_x, scale.machine.zero_z + tool.offset_z
+    if not all(-POSITION_MAX <= zero <= 0 for zero in zeros):
+        yield Found(Refusal.OUTSIDE_TRAVEL, "offset", f"part zero {zeros} steps from the switches")
+    elif tool.offset_x or tool.offset_z:
         for _, detail in _clear(header, scale, tool.offset_x, tool.offset_z):
             yield Found(Refusal.OUTSIDE_TRAVEL, "offset", detail)
 
@@ -228,7 +237,7 @@ def _cut_rules(cut: CutRecord, header: ImageHeader, scale: Scale) -> Iterator[Fo
     if cut.finish_allowance > cut.depth_of_cut:
         detail = f"{cut.finish_allowance} steps, the depth of cut is {cut.depth_of_cut}"
         yield Found(Refusal.ALLOWANCE, "finish_allowance", detail)
-    fastest = scale.machine.max_rate * FEED_UNIT
+    fastest = min(scale.machine.max_rate * FEED_UNIT, FIELD_MAX)
     for key, feed in (("feed", cut.feed), ("finish_feed", cut.finish_feed)):
         if not FEED_MIN <= feed <= fastest:
             feed_range = f"{scale.show_feed(FEED_MIN)} to {scale.show_feed(fastest)}"

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from math import atan, degrees, isqrt
 from typing import NamedTuple
 
-from tornillo.image import Segment, SegmentKind, unpack_segments
+from tornillo.image import CENTRE_UNIT, Segment, SegmentKind, unpack_segments
 from tornillo.material import (
     Chain,
     Material,
@@ -31,7 +31,8 @@ from tornillo.units import Scale
 
 CONTOUR_KIND_MAX = 4
 PLUNGE_KIND_MAX = 1
-RADIUS_MIN = 2
+NEAR_STEPS = 2
+SMALLEST_RADIUS = 504  # 2 steps, less what rounding takes, in 1/256 step
 
 
 class Found(NamedTuple):
@@ -60,10 +61,10 @@ class Ground(NamedTuple):
         """The largest z: one retract in front of the raw face."""
         return self.header.stock_front + self.header.retract
 
-    def outside(self, z: int, x: int, at: str, highest: bool = True) -> Iterator[Found]:
-        """The rules of a place; `at` names it, `highest`: x has an upper bound."""
+    def outside(self, z: int, x: int, at: str) -> Iterator[Found]:
+        """The rules of a place; `at` names it."""
         header, scale = self.header, self.scale
-        if x < -self.tool.below or (highest and x > header.stock_radius):
+        if x < -self.tool.below or x > header.stock_radius:
             limit = scale.show_diameter(header.stock_radius)
             detail = f"{scale.show_diameter(x)}, the stock has {limit}"
             yield Found(Refusal.OUTSIDE_STOCK, f"{at}.x", detail)
@@ -158,6 +159,8 @@ def _segment_rules(
     if segment.kind is not SegmentKind.LINE:
         if not arc_exists(segment):
             yield Found(Refusal.ARC, "end.x", f"from {here}")
+        if len(subs) > 1 and facing:
+            yield Found(Refusal.DIRECTION, "end.z", f"the diameter gets smaller behind {here}")
         if len(subs) > 1:
             yield from _in_order([*ground.outside(subs[0].ze, subs[0].xe, "end")])
     yield from _edge_rules(segment, subs, ground)
@@ -166,16 +169,28 @@ def _segment_rules(
 def arc_exists(segment: Segment) -> bool:
     """Whether an arc leads from its start to its end in whole steps, without running back."""
     crz, crx = rounded_centre(segment)
-    square = crz * crz + crx * crx
-    radius = isqrt(square)
+    radius = isqrt(crz * crz + crx * crx)
     ez, ex = segment.dz - crz, segment.dx - crx
-    if not RADIUS_MIN <= radius <= RADIUS_MAX:
-        return False
-    if abs(ez * ez + ex * ex - square) > 2 * radius:
+    if radius > RADIUS_MAX or abs(isqrt(ez * ez + ex * ex) - radius) > NEAR_STEPS:
         return False
     if segment.kind is SegmentKind.CONVEX:
-        return crx <= 0 <= ex
-    return ex <= 0 <= crx
+        return crx <= 0 <= ex and _drivable(segment)
+    return ex <= 0 <= crx and _drivable(segment)
+
+
+def _drivable(segment: Segment) -> bool:
+    """Whether the motion takes the arc: see arc_begin() in firmware/motion/arc.c.
+
+    Numbers are scaled down until those from the centre to the start fit 16 bits.
+    """
+    m, p = -segment.cz, -segment.cx
+    along = segment.dz * (2 * m + CENTRE_UNIT * segment.dz)
+    across = segment.dx * (2 * p + CENTRE_UNIT * segment.dx)
+    scale = max(0, max(abs(m), abs(p)).bit_length() - 16)
+    half_squares = sum((abs(value) >> scale) ** 2 >> 1 for value in (m, p))
+    radius = isqrt(half_squares) * 181 >> 7
+    missed = abs(along + across) // 2 >> scale
+    return missed <= radius and (scale > 0 or radius >= SMALLEST_RADIUS)
 
 
 def slopes(segment: Segment) -> Iterator[tuple[bool, int, int]]:
@@ -250,7 +265,7 @@ def _plunge_rules(record: PlungeRecord, ground: Ground) -> Iterator[Found]:
     yield from _in_order(
         [
             *ground.in_front(record.z_high + ground.tool.width, "start"),
-            *ground.outside(record.z_low, record.x, "end", highest=False),
+            *ground.outside(record.z_low, record.x, "end"),
         ]
     )
     if record.z_low > record.z_high:

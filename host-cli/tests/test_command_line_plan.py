@@ -96,7 +96,7 @@ def test_columns_stand_under_their_headings(shaft: Path) -> None:
 def test_what_stops_the_lathe_stands_between_the_passes(shaft: Path) -> None:
     text = run(shaft)
     assert "pause, RUN goes on: measure" in text
-    assert "tool change, RUN goes on: parting" in text
+    assert "change the tool too: parting" in text
     assert "without 1 tool change and 1 pause" in text
     assert "along the contour, leaves 0.199" in text
     assert "spring pass" in text

@@ -115,7 +115,8 @@ def compare(rig: Listener, lathe: Lathe, image: PartImage, machine: Machine) -> 
     try:
         told = rig.cut(lathe, image.pack())
     except ChipError as error:
-        assert error.code is ErrorCode.INVALID_PART
+        if error.code is not ErrorCode.INVALID_PART:
+            raise
         return False
     wanted = expected(image, machine)
     for place, (one, other) in enumerate(zip(told, wanted, strict=False)):

@@ -14,6 +14,8 @@ HALTS = {
     Halt.TOOL: "tool change, RUN goes on",
     Halt.END: "the end, parked",
 }
+#: The lathe waits once for a pause and the change of tool behind it.
+WITH_IT = "change the tool too"
 ROLES = {
     Role.SMOOTHING: "along the contour",
     Role.FINISHING: "finishing",
@@ -70,10 +72,14 @@ class PlanText:
         """One line for each pass or stop."""
         rows = [("op", "pass", "", "from z", "diameter", "to z", "diameter", "depth", "time")]
         report = self.report
+        waits = False
         for step, seconds in zip(report.plan.steps, report.timing.steps, strict=True):
             time = f"{seconds:.1f} s"
+            parked, waits = waits, isinstance(step, Stop)
             if isinstance(step, Stop):
-                what = HALTS[step.halt] + (f": {step.text}" if step.text else "")
+                together = parked and step.halt is Halt.TOOL
+                what = WITH_IT if together else HALTS[step.halt]
+                what += f": {step.text}" if step.text else ""
                 rows.append(("", "", what, "", "", "", "", "", time))
                 continue
             along = step.role in (Role.SMOOTHING, Role.FINISHING, Role.SPRING)

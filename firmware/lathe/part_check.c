@@ -406,7 +406,8 @@ static uint8_t check_record(uint8_t number)
             break;
         }
         part_apply();
-        if (part_kind > TOOL_LAST || part_width > WIDTH_MAX) {
+        if (part_kind > TOOL_LAST || part_width > WIDTH_MAX ||
+            part_below > WIDTH_MAX) {
             return REFUSAL_FORMAT;
         }
         return check_zero();

@@ -372,7 +372,7 @@
  * DIRECTION, EMPTY_CUT, ARC, BACK_EDGE, FRONT_EDGE, BLOCKED. After the last
  * one (operation 0): OPERATION_COUNT. */
 /* format is not 2, or a byte, flag or kind has a value that is not defined,
- * or a width is more than 8000 */
+ * or width or below of a tool is more than 8000 */
 #define REFUSAL_FORMAT                      1
 /* shorter than its header, longer than 2496 bytes, fewer than 4 bytes left
  * for a record, or a record that is shorter than 4 bytes or reaches behind

@@ -48,12 +48,17 @@ class Maker:
         """Choose the stock."""
         self.dice = random.Random(seed)
         self.machine = machine
-        self.wild = self.dice.choice([0.0, 0.0, 0.01, 0.03])
+        self.wild = self.dice.choice([0.0, 0.0, 0.0, 0.003, 0.02])
         room_x, room_z = -machine.zero_x, -machine.zero_z
-        self.retract = self.edge(U16, 14, 1, 40, 8000)
-        self.front = self.edge(U16, 0, 50, 300, 8000, room_z - 2 * self.retract)
-        self.radius = self.edge(U16, 1, 60, 800, 1786, room_x - self.retract, 32000)
-        self.length = self.edge(U16, 1000, 7143, machine.travel_z - room_z + self.retract, 32000)
+        self.retract = self.edge(U16, 14, 14, 14, 2, 40)
+        self.front = self.edge(U16, 1, 1, 50, 300, room_z - 2 * self.retract)
+        self.radius = self.edge(U16, 60, 800, 1786, room_x - self.retract)
+        self.length = self.edge(U16, 1000, 7143, machine.travel_z - room_z + self.retract)
+        if self.dice.random() < 0.1:
+            self.retract = self.edge(U16, 1, 8000, 0xFFFF)
+            self.front = self.edge(U16, 8000, 0xFFFF)
+            self.radius = self.edge(U16, 1, 32000, 0xFFFF)
+            self.length = self.edge(U16, 1, 32000, 0xFFFF)
         self.tool = ToolRecord(0, b"t".ljust(12, b"\0"), 0, 0, 0, 148, SLOPE_ANY, 0, 0)
 
     def edge(self, allowed: range, *values: int) -> int:
@@ -61,14 +66,16 @@ class Maker:
         dice = self.dice
         if dice.random() < self.wild:
             return clipped(dice.choice([*EXTREMES, dice.choice(allowed)]), allowed)
-        return clipped(dice.choice(values) + dice.choice([0, 0, 0, 0, 0, 0, 0, 0, -1, 1]), allowed)
+        return clipped(dice.choice(values) + dice.choice([0] * 60 + [-1, 1]), allowed)
 
     def image(self) -> bytes:
         """Return the bytes."""
         records: list[Record] = [self.changed_tool(turning=True), self.cut()]
-        for _ in range(self.dice.randint(1, 6)):
+        for _ in range(self.dice.choice([1, 2, 3, 6])):
             records += self.operation()
-        count = sum(isinstance(record, OPERATIONS) for record in records)
+        if self.dice.random() < 0.005:
+            records[2:2] = [PauseRecord(0, b"")] * self.dice.randint(60, 400)
+        count = sum(isinstance(record, OPERATIONS) for record in records) & 0xFF
         header = ImageHeader(
             format=self.edge(range(256), *[2] * 20) if self.wild else 2,
             operation_count=self.edge(range(256), *[count] * 20) if self.wild else count,
@@ -93,27 +100,32 @@ class Maker:
             kind=self.edge(range(256), 1, 15) if self.wild else dice.randint(0, 15),
             name=b"tool".ljust(12, b"\0"),
             nose=dice.choice(U16),
-            below=self.edge(U16, 1, 20, 112, 8000),
-            width=0 if turning else self.edge(U16, 1, 2, 141, 422, 8000),
+            below=self.edge(U16, 1, 20, 112, 112),
+            width=0 if turning else self.edge(U16, 2, 141, 422),
             back=self.edge(U16, 2, 45, 148, 256, 1000, SLOPE_ANY),
             front=self.edge(U16, 1000, SLOPE_ANY, SLOPE_ANY, SLOPE_ANY),
-            offset_x=self.edge(I16, 0, 0, 0, room_x, 0x7FFF, -0x8000),
-            offset_z=self.edge(I16, 0, 0, 0, 100, room_z, -0x8000),
+            offset_x=0,
+            offset_z=dice.choice([0, 0, clipped(room_z // 2, I16), -70]),
         )
-        if dice.random() < 0.9:
-            self.tool = self.tool._replace(offset_x=0, offset_z=dice.choice([0, 0, 70, -70]))
+        if dice.random() < 0.05:
+            self.tool = self.tool._replace(
+                below=self.edge(U16, 0, 8000, 0x8000, 0xFFFF),
+                width=self.edge(U16, 1, 8000, 0x8000, 0xFFFF),
+                offset_x=self.edge(I16, 0, room_x, -room_x, 0x7FFF, -0x8000),
+                offset_z=self.edge(I16, 0, room_z, -room_z, 0x7FFF, -0x8000),
+            )
         return self.tool
 
     def cut(self) -> CutRecord:
         """Return cutting data."""
         fastest = self.machine.max_rate * 8
-        depth = self.edge(U16, 1, 10, 141, self.radius)
+        depth = self.edge(U16, 2, 10, 50, max(1, self.radius))
         return CutRecord(
             kind=self.edge(range(256), 1, 8),
             depth_of_cut=depth,
             finish_allowance=self.edge(U16, 0, depth // 2, depth),
-            feed=self.edge(U16, 32, 400, 3200, fastest),
-            finish_feed=self.edge(U16, 33, 1600, fastest),
+            feed=self.edge(U16, 33, 400, 3200, fastest - 1, 32, fastest),
+            finish_feed=self.edge(U16, 33, 1600, fastest - 1),
             spindle=self.edge(U16, 0, 100, 2000, 3800) if self.dice.random() < 0.3 else 0,
             peck=self.edge(U16, 0, 70, 0xFFFF),
         )

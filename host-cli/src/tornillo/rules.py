@@ -47,6 +47,8 @@ from tornillo.units import Scale
 
 NAME = re.compile(rb"[a-z0-9-]{1,16}\0*")
 TOOL_KIND_MAX = 15
+#: The chip counts no further: there are too many already.
+OPERATION_LAST = OPERATIONS_MAX + 2
 PAUSE_KIND_MAX = 1
 FIELD_MAX = 0xFFFF
 FIRST_TYPES = (OperationType.TOOL, OperationType.CUT)
@@ -132,7 +134,7 @@ class _Judge:
         for found in self._found(record):
             yield Violation(found.refusal, self.operation, self.index, found.key, found.detail)
         self.index += 1
-        self.operation += isinstance(record, OPERATIONS)
+        self.operation = min(OPERATION_LAST, self.operation + isinstance(record, OPERATIONS))
 
     def _found(self, record: Record) -> Iterator[Found]:
         """What is wrong with one record."""
@@ -213,6 +215,8 @@ def _tool_rules(tool: ToolRecord, header: ImageHeader, scale: Scale) -> Iterator
         yield Found(Refusal.FORMAT, "tool", f"tool number {tool.kind}")
     if tool.width > WIDTH_MAX:
         yield Found(Refusal.FORMAT, "width", f"{tool.width} steps, at most {WIDTH_MAX}")
+    if tool.below > WIDTH_MAX:
+        yield Found(Refusal.FORMAT, "nose_radius", f"{tool.below} steps, at most {WIDTH_MAX}")
     zeros = scale.machine.zero_x + tool.offset_x, scale.machine.zero_z + tool.offset_z
     if not all(-POSITION_MAX <= zero <= 0 for zero in zeros):
         yield Found(Refusal.OUTSIDE_TRAVEL, "offset", f"part zero {zeros} steps from the switches")

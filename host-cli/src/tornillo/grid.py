@@ -148,8 +148,8 @@ def _fit(
     Its centre is the place nearest to that of the true curve that is as far from the rounded
     start as from the rounded end.
     """
-    true = _circle(curve, span)
-    if true is None or end[0] >= start[0]:
+    true = _circle(curve, span) if end[0] < start[0] else None
+    if true is None:
         return None
     first, last = Point(*start), Point(*end)
     normal = last.minus(first).unit.normal
@@ -174,6 +174,8 @@ def _circle(curve: _Curve, span: tuple[float, float]) -> Point | None:
     """The centre of the circle that follows the true curve closely, None when none does."""
     low, high = span
     first, middle, last = curve.at(low), curve.at((low + high) / 2), curve.at(high)
+    if last.minus(first).length == 0:
+        return None
     normal = last.minus(first).unit.normal
     half = last.minus(first).length / 2
     halfway = Point((first.z + last.z) / 2, (first.x + last.x) / 2)

@@ -358,12 +358,12 @@ static void move(void)
 uint8_t passes_source(void)
 {
     parts_open(slot_cut);
-    if (stage == STAGE_PARKED && passes_more) {
-        parked = 1;
-        stage = STAGE_RECORD;
-    }
     do {
         if (stage == STAGE_PARKED) {
+            if (passes_more) {
+                parked = 1; /* and so it goes on in the next chain */
+                stage = STAGE_RECORD;
+            }
             return 0;
         }
         segment(0);

@@ -104,6 +104,21 @@ def test_what_an_earlier_operation_has_cut_is_not_cut_again() -> None:
     assert found[1].stroke == ((-25, 60), (-60, 60))
 
 
+def test_an_operation_with_nothing_left_to_cut_is_left_out_with_its_contour_passes() -> None:
+    before = cylinder(0, -90, 30)
+    shapes: list[Record] = [
+        contour(0, 40, line(-20, 10), line(-20, 0)),
+        contour(0, 60, line(-20, 0), line(0, 40), facing=True),
+        contour(0, 60, line(-95, 0), line(0, 40), facing=True),
+    ]
+    cuts = [[stroke.operation for stroke in passes(POINT, cut(70), before, s)] for s in shapes]
+    assert cuts[:2] == [[1], [1]]
+    assert set(cuts[2]) == {1, 2}
+    tool = ToolRecord(1, b"parting", 0, 0, 20, 0, 0, 0, 0)
+    found = passes(POINT, cut(70), before, tool, PlungeRecord(0, -40, -60, 30))
+    assert [stroke.operation for stroke in found] == [1]
+
+
 def test_an_arc_is_met_on_the_safe_side() -> None:
     quarter = Segment(SegmentKind.CONVEX, -60, 60, -60 * 256, 0)
     found = passes(POINT, cut(30), contour(0, 40, quarter))

@@ -22,7 +22,9 @@ def seconds(*moves: Move, drives: Drives = DRIVES) -> float:
 
 def test_a_feed_below_the_start_rate_takes_its_length() -> None:
     assert seconds(Move((0, 0), (-300, 0), 100 * FEED_UNIT)) == pytest.approx(3 + BEGIN_S)
-    assert seconds(Move((0, 0), (-300, 400), 100 * FEED_UNIT)) == pytest.approx(5 + BEGIN_S, rel=1e-3)
+    assert seconds(Move((0, 0), (-300, 400), 100 * FEED_UNIT)) == pytest.approx(
+        5 + BEGIN_S, rel=1e-3
+    )
 
 
 def test_a_rapid_has_its_ramps() -> None:

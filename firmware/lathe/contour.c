@@ -92,7 +92,8 @@ static void read_arc(void)
         contour_xe = contour_xs - contour_from_x;
         root_of = contour_square;
         radius = root_find();
-        contour_xe += contour_arc == SEGMENT_ARC_CW ? radius : -radius;
+        /* Rounded, a top may come out a step too low. */
+        contour_xe += contour_arc == SEGMENT_ARC_CW ? radius + 1 : -radius;
     }
 }
 

@@ -269,6 +269,9 @@ static uint8_t check_arc(void)
             return REFUSAL_DIRECTION; /* it falls on one side */
         }
         place_x = contour_xe;
+        if (contour_arc == SEGMENT_ARC_CW) {
+            place_x--; /* its top as it is */
+        }
         place_z = contour_ze;
         reason = check_next(contour_arc == SEGMENT_ARC_CW);
         if (reason != 0) {

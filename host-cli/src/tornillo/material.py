@@ -99,7 +99,8 @@ def pieces(z: int, x: int, segment: Segment) -> tuple[Sub, ...]:
     if not z > zc > ze:
         return (Sub(kind, z, x, ze, xe, zc, xc, square),)
     radius = isqrt(square)
-    apex = xc + radius if kind is SegmentKind.CONVEX else xc - radius
+    # Rounded, a top may come out a step too low.
+    apex = xc + radius + 1 if kind is SegmentKind.CONVEX else xc - radius
     return (
         Sub(kind, z, x, zc, apex, zc, xc, square),
         Sub(kind, zc, apex, ze, xe, zc, xc, square),

@@ -162,7 +162,8 @@ def _segment_rules(
         if len(subs) > 1 and facing:
             yield Found(Refusal.DIRECTION, "end.z", f"the diameter gets smaller behind {here}")
         if len(subs) > 1:
-            yield from _in_order([*ground.outside(subs[0].ze, subs[0].xe, "end")])
+            apex = subs[0].xe - (segment.kind is SegmentKind.CONVEX)
+            yield from _in_order([*ground.outside(subs[0].ze, apex, "end")])
     yield from _edge_rules(segment, subs, ground)
 
 

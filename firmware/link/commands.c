@@ -43,6 +43,7 @@ static __code const uint8_t lengths[] = {
     COMMAND_PART_DELETE, PART_DELETE_REQUEST_SIZE, PART_DELETE_REQUEST_SIZE,
     COMMAND_SETTING_GET, SETTING_GET_REQUEST_SIZE, SETTING_GET_REQUEST_SIZE,
     COMMAND_SETTING_SET, SETTING_SET_REQUEST_SIZE, SETTING_SET_REQUEST_SIZE,
+    COMMAND_SERIAL_SET, SERIAL_SET_REQUEST_SIZE, SERIAL_SET_REQUEST_SIZE,
     0};
 /* clang-format on */
 
@@ -260,6 +261,23 @@ static uint8_t setting_get(void)
     return SETTING_GET_RESPONSE_SIZE;
 }
 
+/* Nothing is written unless every character is good. */
+static uint8_t serial_set(void)
+{
+    uint8_t i;
+
+    for (i = 0; i < SERIAL_LENGTH; i++) {
+        if (!usb_is_serial_character(frame_payload[i])) {
+            return ERROR_OUT_OF_RANGE;
+        }
+    }
+    for (i = 0; i < SERIAL_LENGTH; i++) {
+        eeprom_write(EEPROM_SERIAL + i, frame_payload[i]);
+    }
+    usb_read_serial_number();
+    return ERROR_OK;
+}
+
 /* Commands that write flash or EEPROM; only while nothing moves. */
 static uint8_t change_store(void)
 {
@@ -280,6 +298,8 @@ static uint8_t change_store(void)
         return parts_select(frame_payload[PART_SELECT_SLOT_AT]);
     case COMMAND_PART_DELETE:
         return parts_delete(frame_payload[PART_DELETE_SLOT_AT]);
+    case COMMAND_SERIAL_SET:
+        return serial_set();
     default: /* COMMAND_SETTING_SET */
         error = settings_set(frame_payload[SETTING_SET_ID_AT],
                              get_i16(SETTING_SET_VALUE_AT));
@@ -358,6 +378,7 @@ uint8_t commands_execute(void)
     case COMMAND_PART_SELECT:
     case COMMAND_PART_DELETE:
     case COMMAND_SETTING_SET:
+    case COMMAND_SERIAL_SET:
         error = change_store();
         break;
     default:

@@ -289,6 +289,13 @@
 #define SETTING_SET_RESPONSE_SIZE           1
 #define SETTING_SET_ID_AT                   0
 #define SETTING_SET_VALUE_AT                1
+/* Change the serial number; stored before the answer. HELLO tells it at
+ * once, USB when the cable is plugged in again. OUT_OF_RANGE: a character
+ * outside 0x21 to 0x7E, or a comma. */
+#define COMMAND_SERIAL_SET                  0x22
+#define SERIAL_SET_REQUEST_SIZE             8
+#define SERIAL_SET_RESPONSE_SIZE            1
+#define SERIAL_SET_SERIAL_AT                0
 
 /* Part image: header, then one record per operation. */
 #define PART_IMAGE_FORMAT                   2

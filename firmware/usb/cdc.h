@@ -72,6 +72,14 @@ void usb_tick(void);
 #define USB_SERIAL_CHARACTER(i) (usb_serial_descriptor[2 + 2 * (i)])
 extern volatile uint8_t usb_serial_descriptor[18];
 
+/* Reads the serial number from EEPROM once more, after it was changed there.
+ * Main loop. A host asks for it when the cable is plugged in; one that asks
+ * just now may see a part of the old one. */
+void usb_read_serial_number(void);
+
+/* 1 = `character` may stand in a serial number; Windows refuses a comma. */
+uint8_t usb_is_serial_character(uint8_t character);
+
 /* ---- Receiving (main loop) ---------------------------------------------- */
 
 /* The last packet from the host; belongs to the main loop from the moment

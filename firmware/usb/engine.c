@@ -46,13 +46,12 @@ static void attach(void)
     UCON = UCON_USBEN;
 }
 
-/* 1 = `character` may stand in a serial number; Windows refuses a comma. */
-static uint8_t is_serial_character(uint8_t character)
+uint8_t usb_is_serial_character(uint8_t character)
 {
     return character > 0x20 && character < 0x7F && character != ',';
 }
 
-static void read_serial_number(void)
+void usb_read_serial_number(void)
 {
     uint8_t i;
     uint8_t valid = 1;
@@ -65,7 +64,7 @@ static void read_serial_number(void)
         EECON1 = 1; /* RD: the byte is there in the next cycle */
         usb_serial_descriptor[i] = EEDATA;
         usb_serial_descriptor[i + 1] = 0;
-        if (!is_serial_character(EEDATA)) {
+        if (!usb_is_serial_character(EEDATA)) {
             valid = 0;
         }
     }
@@ -80,7 +79,7 @@ static void read_serial_number(void)
 void usb_init(void)
 {
     UCON = 0;
-    read_serial_number();
+    usb_read_serial_number();
     usb_set_up_descriptors();
     usb_received = 0;
     detach();

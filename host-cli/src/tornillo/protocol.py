@@ -93,6 +93,7 @@ class Command(IntEnum):
     PART_DELETE = 0x16
     SETTING_GET = 0x20
     SETTING_SET = 0x21
+    SERIAL_SET = 0x22
 
 
 class Axis(IntEnum):
@@ -267,6 +268,7 @@ REQUESTS = {
     Command.PART_DELETE: Struct("<B"),
     Command.SETTING_GET: Struct("<B"),
     Command.SETTING_SET: Struct("<Bi"),
+    Command.SERIAL_SET: Struct("<8s"),
 }
 #: Response data after the error byte; PART_READ answers bytes alone.
 RESPONSES = {
@@ -289,6 +291,7 @@ RESPONSES = {
     Command.PART_DELETE: Struct("<"),
     Command.SETTING_GET: Struct("<iii"),
     Command.SETTING_SET: Struct("<"),
+    Command.SERIAL_SET: Struct("<"),
 }
 #: Header of a part image.
 IMAGE_HEADER = Struct("<BBBB16sHHHHHH")

@@ -15,7 +15,7 @@ from scripted_chip import ScriptedChip, ScriptedPort
 from tornillo import Lathe, Part
 from tornillo.cli import main
 from tornillo.errors import PortError
-from tornillo.ports import open_port
+from tornillo.opening import open_port
 
 LONGEST_ANSWER = 4096
 

@@ -9,9 +9,11 @@ from tornillo.errors import (
     ChipError,
     LinkError,
     MachineError,
+    NoAnswerError,
     PartError,
     PortError,
     TornilloError,
+    VersionError,
 )
 from tornillo.lathe import Lathe
 from tornillo.machine import Machine
@@ -19,6 +21,7 @@ from tornillo.part import Part
 from tornillo.protocol import Axis, SettingId
 from tornillo.status import Status
 from tornillo.stored import StoredPart
+from tornillo.watching import Watch
 
 __version__ = "0.1.0"
 
@@ -30,6 +33,7 @@ __all__ = [
     "LinkError",
     "Machine",
     "MachineError",
+    "NoAnswerError",
     "Part",
     "PartError",
     "PortError",
@@ -37,5 +41,7 @@ __all__ = [
     "Status",
     "StoredPart",
     "TornilloError",
+    "VersionError",
+    "Watch",
     "__version__",
 ]

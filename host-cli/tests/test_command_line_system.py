@@ -3,13 +3,14 @@
 
 import re
 import stat
+from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
 from console import Tornillo
-from scripted_chip import IDLE, ScriptedChip
+from scripted_chip import IDLE, ScriptedChip, ScriptedPort
 
 from tornillo import udev
 from tornillo.cli import main
@@ -145,3 +146,15 @@ def test_in_the_running_system_udev_is_told_to_read_its_rules(
     path = udev.install(tmp_path)
     assert ran == ([["/sbin/udevadm", "control", "--reload"]] if found else [])
     assert stat.S_ISREG(path.stat().st_mode)
+
+
+def test_why_it_takes_longer_is_told_on_the_way(
+    tornillo: Tornillo, port: ScriptedPort, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def open_late(_name: str, notify: Callable[[str], None]) -> ScriptedPort:
+        notify("COM3 is in use; trying for 5 s")
+        return port
+
+    monkeypatch.setattr("tornillo.lathe.open_port", open_late)
+    result = tornillo("serial")
+    assert (result.stdout, result.stderr) == ("T0000001\n", "COM3 is in use; trying for 5 s\n")

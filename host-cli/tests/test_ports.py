@@ -30,7 +30,7 @@ def plug_in(
     monkeypatch: pytest.MonkeyPatch, names: tuple[str, ...], serials: tuple[str | None, ...]
 ) -> None:
     """Let the system have these lathes beside some other ports."""
-    ports = [entry(*other, None) for other in OTHERS]
+    ports = [entry(name, vendor, product, None) for name, vendor, product in OTHERS]
     ports += [
         entry(name, USB_VENDOR_ID, USB_PRODUCT_ID, serial)
         for name, serial in zip(names, serials, strict=True)

@@ -2,7 +2,7 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "link/commands.h"
-#include "lathe/machine.h"    /* state, actions */
+#include "lathe/machine.h" /* state, actions */
 #include "lathe/part.h"
 #include "lathe/part_check.h" /* upload, max rate */
 #include "lathe/passes.h"     /* progress */
@@ -261,13 +261,21 @@ static uint8_t setting_get(void)
     return SETTING_GET_RESPONSE_SIZE;
 }
 
+/* The first round judges the characters, the second stores them: nothing
+   changes unless all are good. */
 static uint8_t serial_set(void)
 {
     uint8_t i;
+    uint8_t character;
 
-    for (i = 0; i < SERIAL_LENGTH; i++) {
-        eeprom_write(EEPROM_SERIAL + i,
-                     frame_payload[SERIAL_SET_SERIAL_AT + i]);
+    for (i = 0; i < 2 * SERIAL_LENGTH; i++) {
+        character = frame_payload[SERIAL_SET_SERIAL_AT + i % SERIAL_LENGTH];
+        if (character < '!' || character > '~' || character == ',') {
+            return ERROR_OUT_OF_RANGE;
+        }
+        if (i >= SERIAL_LENGTH) {
+            eeprom_write(EEPROM_SERIAL - SERIAL_LENGTH + i, character);
+        }
     }
     usb_read_serial_number();
     return ERROR_OK;
@@ -346,8 +354,8 @@ uint8_t commands_execute(void)
         error = machine_home();
         break;
     case COMMAND_RUN:
-        error = machine_run(frame_payload[RUN_SLOT_AT],
-                            frame_payload[RUN_STEP_AT]);
+        error =
+            machine_run(frame_payload[RUN_SLOT_AT], frame_payload[RUN_STEP_AT]);
         break;
     case COMMAND_HOLD:
         error = machine_hold();

@@ -290,7 +290,8 @@
 #define SETTING_SET_ID_AT                   0
 #define SETTING_SET_VALUE_AT                1
 /* Give the chip another serial number, stored in EEPROM before the answer.
- * HELLO shows it at once, USB from the next connection on. */
+ * HELLO shows it at once, USB from the next connection on. OUT_OF_RANGE: a
+ * character outside ! to ~, or a comma; nothing is changed then. */
 #define COMMAND_SERIAL_SET                  0x22
 #define SERIAL_SET_REQUEST_SIZE             8
 #define SERIAL_SET_RESPONSE_SIZE            1

@@ -49,8 +49,8 @@ def machine() -> Machine:
 @pytest.fixture
 def tornillo(port: ScriptedPort, monkeypatch: pytest.MonkeyPatch) -> Tornillo:
     """Run the command line; every port it opens is `port`."""
-    monkeypatch.setattr("tornillo.lathe.find_port", lambda: "scripted")
-    monkeypatch.setattr("tornillo.lathe.open_port", lambda _name: port)
+    monkeypatch.setattr("tornillo.lathe.find_port", lambda _wanted: "scripted")
+    monkeypatch.setattr("tornillo.lathe.open_port", lambda *_arguments: port)
     monkeypatch.setattr("tornillo.commands.following.POLL_S", 0)
 
     def run(*arguments: str | Path) -> Result:

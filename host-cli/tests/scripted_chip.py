@@ -5,11 +5,15 @@ It stores, selects and judges parts and answers as the protocol page says; it do
 Faults are set by the test: lost or damaged answers, refusals, a pulled cable.
 """
 
+from collections.abc import Callable
 from struct import Struct
+
+from serial import SerialTimeoutException
 
 from tornillo.errors import ChipError
 from tornillo.frames import Frame, FrameError, crc16, decode, encode
 from tornillo.machine import Machine
+from tornillo.opening import WRITE_TIMEOUT_S
 from tornillo.protocol import (
     FRAME_RESPONSE_BIT,
     IMAGE_HEADER,
@@ -80,8 +84,11 @@ class ScriptedChip:
         self.selected = SLOT_NONE
         self.status = IDLE
         self.coming: list[StatusData] = []
+        self.at_status: Callable[[], None] = lambda: None
         self.protocol = PROTOCOL_VERSION
+        self.firmware = (0, 1, 0)
         self.serial = b"T0000001"
+        self.unknown: set[Command] = set()
         self.refusals: dict[Command, bytes] = {}
         self.wrong_crc = False
         self.executed: list[Command] = []
@@ -94,6 +101,8 @@ class ScriptedChip:
     def execute(self, command: Command, payload: bytes) -> bytes:
         """Run one request and return the response payload."""
         self.executed.append(command)
+        if command in self.unknown:
+            return bytes([ErrorCode.UNKNOWN_COMMAND])
         if command in self.refusals:
             return self.refusals[command]
         try:
@@ -113,7 +122,7 @@ class ScriptedChip:
         """HELLO."""
         v = self.values
         return RESPONSES[Command.HELLO].pack(
-            *(self.protocol, 0, 1, 0, PART_SLOTS, PART_IMAGE_MAX),
+            *(self.protocol, *self.firmware, PART_SLOTS, PART_IMAGE_MAX),
             *(v[SettingId.STEP_X_NM], v[SettingId.STEP_Z_NM]),
             *(v[SettingId.TRAVEL_X], v[SettingId.TRAVEL_Z]),
             *(v[SettingId.ZERO_X], v[SettingId.ZERO_Z]),
@@ -122,7 +131,8 @@ class ScriptedChip:
         )
 
     def do_status(self, _payload: bytes) -> bytes:
-        """STATUS; each one brings the next of `coming`."""
+        """STATUS; each one brings the next of `coming`, after `at_status()`."""
+        self.at_status()
         if self.coming:
             self.status = self.coming.pop(0)
         return RESPONSES[Command.STATUS].pack(*self.status)
@@ -269,6 +279,8 @@ class ScriptedChip:
 
     def do_serial_set(self, payload: bytes) -> bytes:
         """SERIAL_SET."""
+        if self.status.state in (State.HOMING, State.RUNNING, State.HOLD, State.PAUSE):
+            raise refuse(ErrorCode.BUSY)
         self.serial = payload
         return b""
 
@@ -276,7 +288,8 @@ class ScriptedChip:
 class ScriptedPort:
     """A serial port with the chip behind it; has what `tornillo.link.Transport` asks for.
 
-    `now` is its clock in seconds: only waiting for an answer that does not come takes time.
+    `now` is its clock in seconds: only waiting for an answer that does not come takes time, and
+    each write its `write_seconds`, a blocked one as long as a real port.
     """
 
     def __init__(self, chip: ScriptedChip) -> None:
@@ -286,6 +299,8 @@ class ScriptedPort:
         self.now = 0.0
         self.closed = False
         self.unplugged = False
+        self.blocked_writes = 0
+        self.write_seconds = 0.0
         self.lose_answers = 0
         self.damage_answers = 0
         self.noise = b""
@@ -304,10 +319,21 @@ class ScriptedPort:
         del self._outgoing[:size]
         return data
 
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that can be read at once."""
+        return len(self._outgoing)
+
     def write(self, data: bytes, /) -> int:
-        """Give requests to the chip."""
+        """Give requests to the chip; half of one when the write is blocked."""
         if self.unplugged:
             raise OSError("device disconnected")
+        if self.blocked_writes:
+            self.blocked_writes -= 1
+            self.now += WRITE_TIMEOUT_S
+            self._incoming += data[: len(data) // 2]
+            raise SerialTimeoutException("Write timeout")
+        self.now += self.write_seconds
         self._incoming += data
         while b"\0" in self._incoming:
             encoded, _, rest = self._incoming.partition(b"\0")

@@ -259,7 +259,7 @@ def test_the_port_comes_from_the_option_or_the_environment(
 ) -> None:
     opened: list[str] = []
 
-    def remember(name: str) -> ScriptedPort:
+    def remember(name: str, *_arguments: object) -> ScriptedPort:
         opened.append(name)
         return port
 

@@ -2,7 +2,9 @@
 """The verbs about motion: home, run, hold, resume, override, stop, reset, status."""
 
 import json
+import signal
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -26,14 +28,17 @@ def loaded(tornillo: Tornillo, chip: ScriptedChip, test_bar: Path) -> ScriptedCh
     return chip
 
 
-def interrupt_when(chip: ScriptedChip, monkeypatch: pytest.MonkeyPatch, coming: int) -> None:
+def interrupt_when(chip: ScriptedChip, coming: int) -> None:
     """Press Ctrl-C when only `coming` states of the chip are still to come."""
+    main = threading.main_thread().ident
+    assert main is not None
 
-    def sleep(_seconds: float) -> None:
+    def press() -> None:
         if len(chip.coming) == coming:
-            raise KeyboardInterrupt
+            chip.at_status = lambda: None
+            signal.pthread_kill(main, signal.SIGINT)
 
-    monkeypatch.setattr("tornillo.commands.following.time.sleep", sleep)
+    chip.at_status = press
 
 
 def test_home_waits_for_the_end_and_tells_the_dead_steps(
@@ -55,11 +60,9 @@ def test_home_tells_why_it_failed(tornillo: Tornillo, chip: ScriptedChip) -> Non
     assert "Try: check that the slide moves" in result.stderr
 
 
-def test_ctrl_c_while_homing_stops_the_slides(
-    tornillo: Tornillo, chip: ScriptedChip, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    chip.coming = [IDLE._replace(state=State.HOMING), IDLE]
-    interrupt_when(chip, monkeypatch, 1)
+def test_ctrl_c_while_homing_stops_the_slides(tornillo: Tornillo, chip: ScriptedChip) -> None:
+    chip.coming = [IDLE._replace(state=State.HOMING)]
+    interrupt_when(chip, 0)
     result = tornillo("home")
     assert result.exit_code == 1
     assert "homing was stopped" in result.stderr
@@ -150,10 +153,10 @@ def test_run_follow_exits_with_1_when_the_part_is_not_finished(
 
 
 def test_ctrl_c_while_following_holds_and_says_how_to_go_on(
-    tornillo: Tornillo, loaded: ScriptedChip, monkeypatch: pytest.MonkeyPatch
+    tornillo: Tornillo, loaded: ScriptedChip
 ) -> None:
     loaded.coming = [CUTTING, NEXT_PASS]
-    interrupt_when(loaded, monkeypatch, 0)
+    interrupt_when(loaded, 0)
     result = tornillo("run", "--follow")
     assert result.exit_code == 1
     assert loaded.status.state == State.HOLD
@@ -162,11 +165,9 @@ def test_ctrl_c_while_following_holds_and_says_how_to_go_on(
     assert "tornillo stop" in result.stderr
 
 
-def test_ctrl_c_after_the_run_has_ended_says_so(
-    tornillo: Tornillo, loaded: ScriptedChip, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_ctrl_c_after_the_run_has_ended_says_so(tornillo: Tornillo, loaded: ScriptedChip) -> None:
     loaded.coming = [CUTTING]
-    interrupt_when(loaded, monkeypatch, 0)
+    interrupt_when(loaded, 0)
     loaded.refusals[Command.HOLD] = bytes([ErrorCode.NOT_RUNNING])
     result = tornillo("run", "--follow")
     assert result.exit_code == 1
@@ -174,10 +175,10 @@ def test_ctrl_c_after_the_run_has_ended_says_so(
 
 
 def test_ctrl_c_tells_when_the_hold_itself_was_refused(
-    tornillo: Tornillo, loaded: ScriptedChip, monkeypatch: pytest.MonkeyPatch
+    tornillo: Tornillo, loaded: ScriptedChip
 ) -> None:
     loaded.coming = [CUTTING]
-    interrupt_when(loaded, monkeypatch, 0)
+    interrupt_when(loaded, 0)
     loaded.refusals[Command.HOLD] = bytes([ErrorCode.UNKNOWN_COMMAND])
     result = tornillo("run", "--follow")
     assert result.exit_code == 1
@@ -185,13 +186,13 @@ def test_ctrl_c_tells_when_the_hold_itself_was_refused(
 
 
 def test_a_pulled_cable_while_following_is_told_and_the_part_goes_on(
-    tornillo: Tornillo, loaded: ScriptedChip, port: ScriptedPort, monkeypatch: pytest.MonkeyPatch
+    tornillo: Tornillo, loaded: ScriptedChip, port: ScriptedPort
 ) -> None:
-    def pull(_seconds: float) -> None:
-        port.unplugged = True
+    def pull() -> None:
+        port.unplugged = not loaded.coming
 
     loaded.coming = [CUTTING]
-    monkeypatch.setattr("tornillo.commands.following.time.sleep", pull)
+    loaded.at_status = pull
     result = tornillo("run", "--follow")
     assert result.exit_code == 1
     assert "the connection was lost" in result.stderr

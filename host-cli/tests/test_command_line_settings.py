@@ -43,24 +43,6 @@ def test_a_setting_is_changed_also_to_a_negative_value(
     assert tornillo("settings", "set", "ESTOP_FITTED", "0").stdout.endswith("was 1, is 0\n")
 
 
-def test_the_serial_number_is_printed_and_changed(tornillo: Tornillo, chip: ScriptedChip) -> None:
-    assert tornillo("settings", "serial").stdout == "T0000001\n"
-    result = tornillo("settings", "serial", "TN-00042")
-    assert result.stdout == "the serial number was T0000001, is TN-00042\n"
-    assert chip.serial == b"TN-00042"
-
-
-@pytest.mark.parametrize("wrong", ["TN-0042", "TN-000042", "TN,00042", "TN 00042", "TN-0004é"])
-def test_a_serial_number_that_hosts_refuse_is_not_sent(
-    tornillo: Tornillo, chip: ScriptedChip, wrong: str
-) -> None:
-    result = tornillo("settings", "serial", wrong)
-    assert result.exit_code == 1
-    assert f'"{wrong}" cannot be a serial number' in result.stderr
-    assert "like TN-00042" in result.stderr
-    assert Command.SERIAL_SET not in chip.executed
-
-
 def test_a_value_outside_its_range_is_refused_with_the_range(
     tornillo: Tornillo, chip: ScriptedChip
 ) -> None:

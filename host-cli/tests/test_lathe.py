@@ -244,10 +244,32 @@ def test_an_override_outside_its_range_is_not_sent(
     assert Command.OVERRIDE not in chip.executed
 
 
-def test_an_empty_answer_to_hello_is_refused(port: ScriptedPort, chip: ScriptedChip) -> None:
-    chip.refusals[Command.HELLO] = b"\0"
-    with pytest.raises(LinkError, match="speaks protocol none"):
-        Lathe(port)
+@pytest.mark.parametrize("number", ["LATHE-07", "~!x_(8)#"])
+def test_a_serial_number_is_changed_and_told_at_once(
+    lathe: Lathe, chip: ScriptedChip, number: str
+) -> None:
+    lathe.set_serial_number(number)
+    assert lathe.serial_number == number
+    assert chip.serial == number.encode()
+
+
+@pytest.mark.parametrize(
+    "number", ["", "1234567", "123456789", "1234 678", "1234,678", "M\xfcller78"]
+)
+def test_a_serial_number_that_hosts_refuse_is_not_sent(
+    lathe: Lathe, chip: ScriptedChip, number: str
+) -> None:
+    with pytest.raises(TornilloError, match="cannot be a serial number"):
+        lathe.set_serial_number(number)
+    assert Command.SERIAL_SET not in chip.executed
+
+
+def test_a_serial_number_that_the_chip_does_not_keep_is_told(
+    lathe: Lathe, chip: ScriptedChip
+) -> None:
+    chip.refusals[Command.SERIAL_SET] = b"\0"
+    with pytest.raises(LinkError, match="has kept T0000001 as its serial number, not LATHE-07"):
+        lathe.set_serial_number("LATHE-07")
 
 
 def test_a_transport_without_close_can_be_used(port: ScriptedPort) -> None:

@@ -3,14 +3,18 @@
 
 import threading
 from itertools import pairwise
+from types import SimpleNamespace
+from unittest import mock
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from scripted_chip import ScriptedChip, ScriptedPort
 
-from tornillo.errors import ChipError, LinkError
+from tornillo.errors import ChipError, LinkError, NoAnswerError
 from tornillo.frames import Frame, encode
 from tornillo.lathe import Lathe
-from tornillo.link import Link
+from tornillo.link import READ_SLICE_S, REQUEST_S, Link
 from tornillo.protocol import (
     FRAME_TIMEOUT_MS,
     FRAME_TRIES,
@@ -47,11 +51,69 @@ def test_every_request_has_a_new_sequence_number(lathe: Lathe, port: ScriptedPor
 
 def test_after_five_tries_the_link_gives_up_with_a_remedy(lathe: Lathe, port: ScriptedPort) -> None:
     port.lose_answers = 100
-    with pytest.raises(LinkError, match="no answer to STATUS after 5 tries") as caught:
+    with pytest.raises(NoAnswerError, match="no answer to STATUS after 5 tries") as caught:
         lathe.status()
     assert "cable" in caught.value.remedy
-    assert port.now == pytest.approx(FRAME_TRIES * FRAME_TIMEOUT_MS / 1000, abs=0.2)
+    assert caught.value.heard == 0
+    assert port.now == pytest.approx(FRAME_TRIES * FRAME_TIMEOUT_MS / 1000, abs=0.1)
     assert port.lose_answers == 100 - FRAME_TRIES
+
+
+@pytest.mark.parametrize("write_seconds", [0.0, 0.05, 0.2, 0.25])
+@pytest.mark.parametrize("blocked", [0, 1, 3, 1000])
+def test_no_request_takes_longer_than_its_documented_time(
+    lathe: Lathe, port: ScriptedPort, write_seconds: float, blocked: int
+) -> None:
+    assert REQUEST_S == 1.5
+    port.lose_answers = 100
+    port.write_seconds = write_seconds
+    port.blocked_writes = blocked
+    with pytest.raises(NoAnswerError):
+        lathe.status()
+    assert 1.2 <= port.now <= REQUEST_S + READ_SLICE_S
+
+
+def test_a_request_that_got_half_out_is_sent_again_and_executed_once(
+    lathe: Lathe, port: ScriptedPort, chip: ScriptedChip
+) -> None:
+    port.blocked_writes = 2
+    lathe.set_setting(SettingId.RAPID_RATE_X, 900)
+    assert chip.executed.count(Command.SETTING_SET) == 1
+    assert lathe._link.repeats == 2
+
+
+@given(st.lists(st.binary(min_size=1, max_size=90), max_size=6), st.integers(0, 4))
+def test_whatever_comes_between_the_answers_the_next_ones_are_right(
+    garbage: list[bytes], damaged: int
+) -> None:
+    chip = ScriptedChip()
+    port = ScriptedPort(chip)
+    with mock.patch("tornillo.link.time", SimpleNamespace(monotonic=lambda: port.now)):
+        lathe = Lathe(port)
+        for number, noise in enumerate([*garbage, b""]):
+            port.inject(noise)
+            port.damage_answers = damaged
+            lathe.set_setting(SettingId.RAPID_RATE_X, 900 + number)
+            assert lathe.setting(SettingId.RAPID_RATE_X).value == 900 + number
+        assert chip.executed.count(Command.SETTING_SET) == len(garbage) + 1
+
+
+@given(st.binary(max_size=200), st.integers(0, 40))
+def test_whatever_was_on_the_line_before_the_chip_carries_out_the_next_request(
+    garbage: bytes, cut: int
+) -> None:
+    port = ScriptedPort(ScriptedChip())
+    port.write(garbage.replace(b"\0", b"\1") + encode(Frame(9, Command.STOP, b""))[:cut][:-1])
+    with mock.patch("tornillo.link.time", SimpleNamespace(monotonic=lambda: port.now)):
+        assert Lathe(port)._link.repeats == 0
+
+
+def test_a_closed_link_says_so(lathe: Lathe, port: ScriptedPort) -> None:
+    lathe.close()
+    lathe.close()
+    assert port.closed
+    with pytest.raises(LinkError, match="the port has been closed"):
+        lathe.status()
 
 
 @pytest.mark.parametrize(

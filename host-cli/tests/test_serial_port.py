@@ -3,6 +3,8 @@
 
 import os
 import pty
+import subprocess
+import sys
 import threading
 import tty
 from collections.abc import Iterator
@@ -15,7 +17,7 @@ from scripted_chip import ScriptedChip, ScriptedPort
 from tornillo import Lathe, Part
 from tornillo.cli import main
 from tornillo.errors import PortError
-from tornillo.ports import open_port
+from tornillo.opening import open_port
 
 LONGEST_ANSWER = 4096
 
@@ -68,6 +70,29 @@ def test_what_a_modem_probe_left_on_the_line_does_no_harm(terminal: str) -> None
 def test_a_second_program_is_told_that_the_port_is_in_use(terminal: str) -> None:
     with Lathe.open(terminal), pytest.raises(PortError, match="is in use by another program"):
         Lathe.open(terminal)
+
+
+def test_a_second_program_is_told_which_one_has_the_port(terminal: str) -> None:
+    code = (
+        f"import sys, serial; port = serial.Serial({terminal!r}, exclusive=True)\n"
+        "print('open', flush=True); sys.stdin.read()"
+    )
+    command = [sys.executable, "-c", code]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as other:
+        assert other.stdout is not None
+        assert other.stdout.readline() == b"open\n"
+        with pytest.raises(PortError, match=rf"program: python\S* \(process {other.pid}\)"):
+            Lathe.open(terminal)
+        other.communicate(b"")
+
+
+def test_the_status_is_watched_over_a_serial_port(terminal: str) -> None:
+    seen: list[int] = []
+    with Lathe.open(terminal) as lathe, lathe.watch(lambda now: seen.append(now.dead_x), every=0):
+        for _ in range(20):
+            assert lathe.status().dead_z == 31
+    assert set(seen) <= {23}
+    assert not [thread for thread in threading.enumerate() if thread.name == "tornillo-watch"]
 
 
 def test_the_command_line_works_over_a_serial_port(terminal: str) -> None:

@@ -9,9 +9,11 @@ from tornillo.errors import (
     ChipError,
     LinkError,
     MachineError,
+    NoAnswerError,
     PartError,
     PortError,
     TornilloError,
+    VersionError,
 )
 from tornillo.lathe import Lathe
 from tornillo.machine import Machine
@@ -19,7 +21,7 @@ from tornillo.part import Part
 from tornillo.protocol import Axis, SettingId
 from tornillo.status import Status
 from tornillo.stored import StoredPart
-from tornillo.watch import StatusWatch
+from tornillo.watching import Watch
 
 __version__ = "0.1.0"
 
@@ -31,13 +33,15 @@ __all__ = [
     "LinkError",
     "Machine",
     "MachineError",
+    "NoAnswerError",
     "Part",
     "PartError",
     "PortError",
     "SettingId",
     "Status",
-    "StatusWatch",
     "StoredPart",
     "TornilloError",
+    "VersionError",
+    "Watch",
     "__version__",
 ]

@@ -9,15 +9,7 @@ import sys
 import click
 
 from tornillo import __version__
-from tornillo.commands import (
-    computer,
-    drawing,
-    import_dxf,
-    parts,
-    planning,
-    running,
-    settings,
-)
+from tornillo.commands import drawing, import_dxf, parts, planning, running, settings, system
 from tornillo.errors import TornilloError
 
 
@@ -40,7 +32,8 @@ class TeachingGroup(click.Group):
     "--port",
     envvar="TORNILLO_PORT",
     metavar="NAME",
-    help="Serial port of the lathe, like /dev/ttyACM0 or COM3; found by its USB id when left out.",
+    help="Port of the lathe, like /dev/ttyACM0 or COM3, or its serial number; found by its USB id "
+    "when left out.",
 )
 @click.pass_context
 def main(context: click.Context, port: str | None) -> None:
@@ -51,6 +44,6 @@ def main(context: click.Context, port: str | None) -> None:
     context.obj = port
 
 
-for module in (parts, planning, drawing, import_dxf, running, settings, computer):
+for module in (parts, planning, drawing, import_dxf, running, settings, system):
     for verb in module.VERBS:
         main.add_command(verb)

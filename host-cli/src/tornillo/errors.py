@@ -44,6 +44,19 @@ class LinkError(TornilloError):
     """The chip does not answer, or not as the protocol says."""
 
 
+class NoAnswerError(LinkError):
+    """No answer came in the time of a request; `heard` bytes of something else did."""
+
+    def __init__(self, message: str, remedy: str, heard: int) -> None:
+        """Keep how many bytes came that were no answer."""
+        super().__init__(message, remedy)
+        self.heard = heard
+
+
+class VersionError(LinkError):
+    """The firmware and this tornillo do not belong together; the message names both."""
+
+
 class AlarmError(TornilloError):
     """The machine stopped with an alarm."""
 
@@ -52,6 +65,7 @@ class ChipError(TornilloError):
     """The chip answered a request with an error code.
 
     For `ErrorCode.INVALID_PART`, `reason` and `operation` (from 1, 0 the whole part) say why.
+    `note` is added to the message.
     """
 
     def __init__(
@@ -60,6 +74,7 @@ class ChipError(TornilloError):
         code: ErrorCode,
         reason: Refusal | None = None,
         operation: int = 0,
+        note: str = "",
     ) -> None:
         """Say in words what the codes mean."""
         message, remedy = ERROR_TEXTS[code]
@@ -68,7 +83,7 @@ class ChipError(TornilloError):
             explained = REFUSAL_TEXTS[reason]
             message = f"{message}: {place}: {explained.cause}"
             remedy = explained.remedy
-        super().__init__(f"{command.name} was refused: {message}", remedy)
+        super().__init__(f"{command.name} was refused: {message}{note}", remedy)
         self.command = command
         self.code = code
         self.reason = reason

@@ -6,10 +6,11 @@
         lathe.home()
         slot = lathe.upload(part.image(lathe.machine()))
         lathe.run(slot)
-        print(lathe.status())
+        print(lathe.watch(lambda status: status.finished).wait())
 
-Every method may raise ChipError (the chip says no) or LinkError (it does not answer).
-All methods may be called from several threads.
+Every method may raise ChipError (the chip says no) or LinkError (it does not answer; told
+after tornillo.link.REQUEST_S = 1.5 seconds). All methods may be called from several threads,
+also while a watch runs. docs/library.md shows how it is used.
 """
 
 import struct
@@ -17,17 +18,18 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-from tornillo.errors import ChipError, LinkError, TornilloError
+from tornillo import versions
+from tornillo.errors import ChipError, LinkError, NoAnswerError, TornilloError
 from tornillo.frames import crc16
 from tornillo.image import ImageError, PartImage
 from tornillo.link import Link, Transport
 from tornillo.machine import Machine
-from tornillo.ports import find_port, open_port
+from tornillo.opening import Notify, open_port
+from tornillo.ports import find_port
 from tornillo.protocol import (
     FRAME_TIMEOUT_MS,
     OVERRIDE_MAX,
     OVERRIDE_MIN,
-    PROTOCOL_VERSION,
     REQUESTS,
     RESPONSES,
     SERIAL_LENGTH,
@@ -47,41 +49,56 @@ from tornillo.protocol import (
 )
 from tornillo.status import Status
 from tornillo.stored import StoredPart
-from tornillo.watch import StatusWatch
+from tornillo.watching import StatusCallback, Watch
 
 Progress = Callable[[int, int], None]
+#: How often a watch asks, in seconds.
+WATCH_EVERY_S = 0.2
 
 
 class Lathe:
-    """A connected lathe. Leaving the `with` block closes the port; a running part goes on."""
+    """A connected lathe. Leaving the `with` block closes the port; a running part goes on.
+
+    `hello` is what the chip told about itself when it was last asked.
+    """
 
     def __init__(self, transport: Transport, timeout_s: float = FRAME_TIMEOUT_MS / 1000) -> None:
         """Talk over `transport`, an open serial port or anything with its read and write.
 
-        Raises LinkError when nothing answers, or something with another protocol version.
+        `timeout_s`: seconds to wait for an answer before the request is repeated. Raises
+        NoAnswerError when nothing answers, VersionError when the firmware speaks another
+        version of the protocol.
         """
-        self._transport = transport
         self._link = Link(transport, timeout_s)
+        self._watches: list[Watch] = []
         self.hello = self._greet()
 
     @classmethod
-    def open(cls, port: str | None = None) -> "Lathe":
-        """Open `port`, or the one lathe that is plugged in.
+    def open(cls, port: str | None = None, notify: Notify | None = None) -> "Lathe":
+        """Open the lathe at `port`, or the one that is plugged in.
 
-        Raises PortError when there is no such port or it cannot be opened.
+        `port`: the name of a port (/dev/ttyACM0, COM3) or the serial number of a lathe. `notify`
+        is told in words when it takes longer, up to 5 s, because the port is held for a moment.
+
+        Raises PortError when there is no such port, several lathes to choose from, or it cannot
+        be opened; NoAnswerError and VersionError as `Lathe()`. All say what to do.
         """
-        serial = open_port(port or find_port())
+        name = find_port(port or None)
+        serial = open_port(name, notify)
         try:
             return cls(serial)
+        except NoAnswerError as error:
+            serial.close()
+            raise versions.no_hello(name, error) from error
         except LinkError:
             serial.close()
             raise
 
     def close(self) -> None:
-        """Close the port, if it can be closed."""
-        close = getattr(self._transport, "close", None)
-        if close is not None:
-            close()
+        """End all watches and close the port; what is being cut goes on."""
+        for watch in self._watches:
+            watch.stop()
+        self._link.close()
 
     def __enter__(self) -> "Lathe":
         """Return the lathe itself."""
@@ -118,13 +135,18 @@ class Lathe:
         """Where the tool is and what the machine does."""
         return Status.from_data(StatusData(*self._numbers(Command.STATUS)))
 
-    def watch(self, callback: Callable[[Status], object], every_s: float = 0.1) -> StatusWatch:
-        """Call `callback` with the status every `every_s` seconds, in a thread of its own.
+    def watch(self, callback: StatusCallback, every: float = WATCH_EVERY_S) -> Watch:
+        """Call `callback(status)` now and then `every` seconds, from a thread of its own.
 
-        with lathe.watch(print):
-            lathe.run()
+        Other methods go on working meanwhile, in any thread. It ends when the callback returns
+        something true or raises, when the link fails, by `stop()`, at the end of the `with` block
+        or with the lathe. `wait()` waits for that and raises the error, if it was one:
+
+            lathe.watch(lambda status: not status.moving).wait()
         """
-        return StatusWatch(self.status, callback, every_s)
+        watch = Watch(self.status, callback, every)
+        self._watches = [*(old for old in self._watches if old.active), watch]
+        return watch
 
     def home(self) -> None:
         """Start to look for the limit switches; `status()` tells the end."""
@@ -266,7 +288,8 @@ class Lathe:
     def set_serial_number(self, serial: str) -> None:
         """Give the chip another serial number: 8 characters from ! to ~ without a comma.
 
-        USB shows it from the next connection on. Raises TornilloError for other characters.
+        `serial_number` is the new one at once; USB shows it from the next connection on. Raises
+        TornilloError for other characters, ChipError (BUSY) while the lathe moves.
         """
         fits = all("!" <= character <= "~" and character != "," for character in serial)
         if len(serial) != SERIAL_LENGTH or not fits:
@@ -277,16 +300,19 @@ class Lathe:
             )
         self._request(Command.SERIAL_SET, serial.encode("ascii"))
         self.hello = self._greet()
+        if self.serial_number != serial:
+            raise LinkError(
+                f"the chip has kept {self.serial_number} as its serial number, not {serial}",
+                "try again; if it stays, the chip's memory is worn out",
+            )
 
     def _greet(self) -> HelloData:
         """Start the sequence anew and check the protocol version."""
-        data = self._request(Command.HELLO)
-        if data[:1] != bytes([PROTOCOL_VERSION]):
-            spoken = data[0] if data else "none"
-            raise LinkError(
-                f"the firmware speaks protocol {spoken}, this tornillo speaks {PROTOCOL_VERSION}",
-                "update the firmware, or install the tornillo version that belongs to it",
-            )
+        try:
+            data = self._link.request(Command.HELLO)
+        except ChipError as error:
+            raise versions.refused_hello(error.code.name) from error
+        versions.check(data)
         return HelloData(*self._unpack(Command.HELLO, data))
 
     def _request(self, command: Command, *values: int | bytes, data: bytes = b"") -> bytes:
@@ -295,7 +321,13 @@ class Lathe:
             payload = REQUESTS[command].pack(*values) + data
         except struct.error as error:
             raise ChipError(command, ErrorCode.OUT_OF_RANGE) from error
-        return self._link.request(command, payload)
+        try:
+            return self._link.request(command, payload)
+        except ChipError as error:
+            if error.code is not ErrorCode.UNKNOWN_COMMAND:
+                raise
+            note = versions.unknown_command_note(self.firmware)
+            raise ChipError(command, error.code, note=note) from error
 
     def _numbers(self, command: Command, *values: int) -> tuple[Any, ...]:
         """Send a request and take its response apart."""

@@ -4,13 +4,16 @@
 A request is repeated with the same sequence number until its response comes; the chip does
 not execute a repeated request again. Frames that do not belong to the request (late answers,
 garbage, half frames) are skipped.
+
+A request takes REQUEST_S at most, whatever the line does: that is one time-out more than its
+tries need, for writing that is held up.
 """
 
 import threading
 import time
 from typing import Protocol
 
-from tornillo.errors import ChipError, LinkError
+from tornillo.errors import ChipError, LinkError, NoAnswerError
 from tornillo.frames import DELIMITER, Frame, FrameError, decode, encode
 from tornillo.protocol import (
     FRAME_RESPONSE_BIT,
@@ -21,13 +24,18 @@ from tornillo.protocol import (
     Refusal,
 )
 
+REQUEST_S = (FRAME_TRIES + 1) * FRAME_TIMEOUT_MS / 1000
 READ_SLICE_S = 0.02
 LONGEST_FRAME = 64
 REFUSAL_SIZE = 2
 
 
 class Transport(Protocol):
-    """What the link needs of a port: pyserial's `Serial` has it."""
+    """What the link needs of a port: pyserial's `Serial` has it.
+
+    An attribute `in_waiting`, the number of bytes that can be read at once, makes it faster; a
+    method `close` is called by `Link.close`.
+    """
 
     timeout: float | None
 
@@ -42,21 +50,27 @@ class Link:
     """The host's end of the link; safe to use from several threads."""
 
     def __init__(self, transport: Transport, timeout_s: float = FRAME_TIMEOUT_MS / 1000) -> None:
-        """Use `transport`; wait `timeout_s` for each answer."""
+        """Use `transport`; wait `timeout_s` for each answer, and six times that in all."""
         self._transport = transport
         self._timeout_s = timeout_s
         self._lock = threading.Lock()
         self._seq = 0
         self._received = bytearray()
+        self._closed = False
         self.repeats = 0
+        self.heard = 0
         transport.timeout = min(READ_SLICE_S, timeout_s)
 
     def request(self, command: Command, payload: bytes = b"") -> bytes:
         """Send a request and return the data of its response, without the error byte.
 
-        Raises ChipError when the chip refuses, LinkError when it does not answer.
+        Raises ChipError when the chip refuses, NoAnswerError when it does not answer, LinkError
+        when the connection is lost or closed. A request of another thread that is under way
+        comes to its end first.
         """
         with self._lock:
+            if self._closed:
+                raise LinkError("the port has been closed", "open the lathe again")
             self._seq = 0 if command is Command.HELLO else (self._seq + 1) & 0xFF
             response = self._exchange(Frame(self._seq, command, payload))
         if not response:
@@ -68,14 +82,28 @@ class Link:
             return response[1:]
         raise _refused(command, response)
 
+    def close(self) -> None:
+        """Close the port when the request under way has come to its end."""
+        with self._lock:
+            self._closed = True
+            close = getattr(self._transport, "close", None)
+            if close is not None:
+                close()
+
     def _exchange(self, frame: Frame) -> bytes:
         """Send `frame` until its response arrives; return the response's payload."""
         wire = DELIMITER + encode(frame)
+        self.heard = 0
+        last_try = time.monotonic() + FRAME_TRIES * self._timeout_s
+        end = last_try + self._timeout_s
+        tries = 0
         try:
-            for attempt in range(FRAME_TRIES):
-                self.repeats += attempt > 0
-                self._transport.write(wire)
-                response = self._response_to(frame)
+            while tries < FRAME_TRIES and time.monotonic() < last_try:
+                self.repeats += tries > 0
+                tries += 1
+                if not self._written(wire):
+                    continue
+                response = self._response_to(frame, min(time.monotonic() + self._timeout_s, end))
                 if response is not None:
                     return response
         except OSError as error:
@@ -84,15 +112,28 @@ class Link:
                 "check the cable and that the lathe has power, then try again; "
                 "a part being cut goes on without the computer",
             ) from error
-        raise LinkError(
-            f"no answer to {Command(frame.code).name} after {FRAME_TRIES} tries",
+        raise NoAnswerError(
+            f"no answer to {Command(frame.code).name} after {tries} tries",
             "check that the port is the lathe's and that no other program uses it; "
             "unplug and plug in the cable",
+            self.heard,
         )
 
-    def _response_to(self, request: Frame) -> bytes | None:
+    def _written(self, wire: bytes) -> bool:
+        """Send `wire`; False when the port does not take it in its own time.
+
+        The delimiter in front of the next try ends what a half-written one left.
+        """
+        try:
+            self._transport.write(wire)
+        except OSError as error:
+            if _timed_out(error):
+                return False
+            raise
+        return True
+
+    def _response_to(self, request: Frame, deadline: float) -> bytes | None:
         """Wait for the response to `request`; None when the time is over."""
-        deadline = time.monotonic() + self._timeout_s
         while time.monotonic() < deadline:
             encoded = self._next_frame(deadline)
             try:
@@ -105,16 +146,24 @@ class Link:
 
     def _next_frame(self, deadline: float) -> bytes:
         """Bytes up to the next delimiter; empty when the time is over first."""
-        while time.monotonic() < deadline:
-            byte = self._transport.read(1)
-            if byte == DELIMITER:
-                encoded = bytes(self._received)
-                self._received.clear()
-                return encoded
-            self._received += byte
-            if len(self._received) > LONGEST_FRAME:
-                del self._received[:-LONGEST_FRAME]
-        return b""
+        while DELIMITER not in self._received:
+            if time.monotonic() >= deadline:
+                return b""
+            del self._received[:-LONGEST_FRAME]
+            waiting = getattr(self._transport, "in_waiting", 0)
+            found = self._transport.read(min(max(waiting, 1), LONGEST_FRAME))
+            self.heard += len(found)
+            self._received += found
+        encoded, _, rest = self._received.partition(DELIMITER)
+        self._received = rest
+        return bytes(encoded)
+
+
+def _timed_out(error: OSError) -> bool:
+    """Whether a port has given up writing because the other side takes nothing."""
+    from serial import SerialTimeoutException
+
+    return isinstance(error, SerialTimeoutException)
 
 
 def _refused(command: Command, response: bytes) -> Exception:

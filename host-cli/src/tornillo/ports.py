@@ -1,72 +1,107 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Find and open the lathe's serial port.
+"""Find the lathe among the serial ports, by its USB id, its serial number or the port's name.
 
 pyserial is imported when it is needed, so that commands without a port start fast.
 """
 
-import errno
-from typing import TYPE_CHECKING
+import re
+from pathlib import Path
+from typing import NamedTuple
 
 from tornillo.errors import PortError
 from tornillo.protocol import USB_PRODUCT_ID, USB_VENDOR_ID
 
-if TYPE_CHECKING:
-    from serial import Serial
+WINDOWS_NAME = re.compile(r"(?:\\\\[.?]\\)?(COM\d+):?", re.IGNORECASE)
+BARE_UNIX_NAME = re.compile(r"tty[A-Z]+\d+|(?:tty|cu)\.\S+")
+MACOS_WAITING = "/dev/tty."
+MACOS_CALLING = "/dev/cu."
 
-WRITE_TIMEOUT_S = 1.0
+
+class FoundLathe(NamedTuple):
+    """A lathe that is plugged in: the name of its port and its serial number."""
+
+    port: str
+    serial_number: str
+
+    def __str__(self) -> str:
+        """Both, for a person."""
+        return f"{self.port} (serial number {self.serial_number})"
 
 
-def find_port() -> str:
-    """The port of the one lathe that is plugged in.
-
-    Raises PortError when there is none or more than one.
-    """
+def found_lathes() -> list[FoundLathe]:
+    """Every lathe that is plugged in, by the name of its port."""
     from serial.tools.list_ports import comports
 
-    found = [port for port in comports() if (port.vid, port.pid) == (USB_VENDOR_ID, USB_PRODUCT_ID)]
+    return sorted(
+        FoundLathe(str(port.device), port.serial_number or "unknown")
+        for port in comports()
+        if (port.vid, port.pid) == (USB_VENDOR_ID, USB_PRODUCT_ID)
+    )
+
+
+def port_name(text: str) -> str | None:
+    r"""`text` as the name of a port, the way this system opens it; None when it is none.
+
+    Windows: COM3, com3:, \\.\COM12. macOS: /dev/cu.usbmodem1; /dev/tty.usbmodem1 is replaced
+    by it, because opening that one waits for a modem. Linux: /dev/ttyACM0, any path. The
+    folder /dev may be left out.
+    """
+    windows = WINDOWS_NAME.fullmatch(text)
+    if windows is not None:
+        return windows[1].upper()
+    name = f"/dev/{text}" if BARE_UNIX_NAME.fullmatch(text) else text
+    if name.startswith(MACOS_WAITING):
+        return MACOS_CALLING + name.removeprefix(MACOS_WAITING)
+    return name if "/" in name or Path(name).exists() else None
+
+
+def find_port(wanted: str | None = None) -> str:
+    """The port that `wanted` names, a port's name or a lathe's serial number; else the only lathe.
+
+    Raises PortError when there is no such lathe, or more than one.
+    """
+    name = None if wanted is None else port_name(wanted)
+    if name is not None:
+        return name
+    plugged = found_lathes()
+    if wanted is None:
+        found = plugged
+    else:
+        found = [lathe for lathe in plugged if lathe.serial_number.lower() == wanted.lower()]
+    if len(found) > 1:
+        raise _several(found)
     if not found:
-        raise PortError(
+        raise _none(wanted, plugged)
+    return found[0].port
+
+
+def _none(wanted: str | None, plugged: list[FoundLathe]) -> PortError:
+    """No lathe, or not the wanted one."""
+    if wanted is None or not plugged:
+        return PortError(
             f"no lathe found: no port has the USB id {USB_VENDOR_ID:04x}:{USB_PRODUCT_ID:04x}",
             "plug in the USB cable and switch the lathe on, or name the port with --port",
         )
-    if len(found) > 1:
-        names = ", ".join(f"{port.device} (serial number {port.serial_number})" for port in found)
-        raise PortError(f"more than one lathe found: {names}", "choose one with --port")
-    return str(found[0].device)
+    return PortError(
+        f"no lathe has the serial number {wanted}, and no port is called so",
+        f"plugged in: {_listed(plugged)}",
+    )
 
 
-def open_port(name: str) -> "Serial":
-    """Open `name` for this program alone.
-
-    Raises PortError, with what to do about it.
-    """
-    from serial import Serial, SerialException
-
-    try:
-        return Serial(name, exclusive=True, write_timeout=WRITE_TIMEOUT_S)
-    except SerialException as error:
-        raise _explained(name, error) from error
-
-
-def _explained(name: str, error: OSError) -> PortError:
-    """The reason why a port did not open, as far as it can be known."""
-    text = str(error)
-    if error.errno == errno.EACCES or "Permission" in text or "Access is denied" in text:
-        return PortError(
-            f"no permission to use {name}",
-            "on Linux run `sudo tornillo udev` once and plug the cable in again, or join the group "
-            "that owns the port: `sudo usermod -aG dialout $USER`, then log out and in again; "
-            "on Windows close the program that uses the port",
+def _several(found: list[FoundLathe]) -> PortError:
+    """More than one lathe, and how to choose."""
+    first = found[0]
+    remedy = f"choose one: `tornillo --port {first.port} ...`"
+    if len({lathe.serial_number for lathe in found}) == len(found):
+        remedy += f" or `tornillo --port {first.serial_number} ...`"
+    else:
+        remedy += (
+            "; to choose by serial number give each its own, "
+            f"`tornillo --port {first.port} serial --random`"
         )
-    if error.errno == errno.EBUSY or "exclusively lock" in text or "busy" in text.lower():
-        return PortError(
-            f"{name} is in use by another program",
-            "close the other program; right after plugging in, ModemManager may be probing the "
-            "port: wait 30 s, or keep it off for good with `sudo tornillo udev`",
-        )
-    if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO) or "FileNotFound" in text:
-        return PortError(
-            f"there is no port {name}",
-            "check the name, or leave out --port to find the lathe by its USB id",
-        )
-    return PortError(f"{name} cannot be opened: {text}", "check that it is the lathe's port")
+    return PortError(f"more than one lathe found: {_listed(found)}", remedy)
+
+
+def _listed(found: list[FoundLathe]) -> str:
+    """Ports and serial numbers in one line."""
+    return ", ".join(map(str, found))

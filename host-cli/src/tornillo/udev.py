@@ -1,54 +1,75 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The udev rule that lets everybody at the computer use the lathe and keeps modem daemons off."""
+"""The udev rule that lets a user of Linux open the lathe's port and keeps ModemManager away."""
 
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-from tornillo.errors import PortError
-from tornillo.protocol import USB_PRODUCT_ID, USB_VENDOR_ID
+from tornillo.errors import TornilloError
 
-#: Before 73-seat-late.rules, which gives tagged devices to whoever sits at the computer.
-RULE_NAME = "70-tornillo.rules"
-RULES_FOLDER = Path("/etc/udev/rules.d")
-_IDS = '{field}{{idVendor}}=="{vendor:04x}", {field}{{idProduct}}=="{product:04x}"'
-
-
-def _rule() -> str:
-    """The rule's text: one line for the device, one for its port."""
-    ids = {"vendor": USB_VENDOR_ID, "product": USB_PRODUCT_ID}
-    device, port = (_IDS.format(field=field, **ids) for field in ("ATTR", "ATTRS"))
-    return (
-        "# Tornillo lathe: usable without being root, left alone by ModemManager.\n"
-        f'ACTION!="remove", SUBSYSTEM=="usb", {device}, ENV{{ID_MM_DEVICE_IGNORE}}="1"\n'
-        f'ACTION!="remove", SUBSYSTEM=="tty", {port}, ENV{{ID_MM_PORT_IGNORE}}="1", '
-        'TAG+="uaccess", GROUP="dialout", MODE="0660"\n'
-    )
+RULE_FILE = "60-tornillo.rules"
+RULES_FOLDER = Path("etc/udev/rules.d")
+ROOT = Path("/")
+#: What a person types to install the rule; sudo has a PATH of its own.
+COMMAND = 'sudo "$(command -v tornillo)" udev --install'
+UDEVADM = "udevadm"
+UDEVADM_S = 10.0
+RELOAD = (("control", "--reload"), ("trigger", "--subsystem-match=tty"))
 
 
-RULE = _rule()
-RELOAD = (("udevadm", "control", "--reload"), ("udevadm", "trigger", "--subsystem-match=tty"))
+def rule() -> str:
+    """The text of the rule."""
+    return (Path(__file__).parent / RULE_FILE).read_text(encoding="utf-8")
 
 
-def install_rule(folder: Path = RULES_FOLDER) -> Path:
-    """Write the rule into `folder`, have udev read it, and return its path.
+def place(root: Path = ROOT) -> Path:
+    """Where the rule belongs in the system at `root`."""
+    return root / RULES_FOLDER / RULE_FILE
 
-    Raises PortError when that is not allowed or the computer has no udev.
+
+def installed(root: Path = ROOT) -> bool:
+    """Whether this version of the rule is in the system at `root`."""
+    try:
+        return place(root).read_text(encoding="utf-8") == rule()
+    except OSError:
+        return False
+
+
+def install(root: Path = ROOT) -> Path:
+    """Write the rule into the system at `root`, have udev read it, and return where it is.
+
+    The rights hold at once in the running system, ModemManager stays away from a lathe that is
+    plugged in afterwards. Raises TornilloError when it cannot be written, or no udev would read
+    it, with what to do.
     """
-    path = folder / RULE_NAME
-    if not folder.is_dir():
-        raise PortError(
-            f"there is no {folder}: this computer has no udev",
-            "only Linux needs the rule; elsewhere the port can be used as it is",
+    if not sys.platform.startswith("linux"):
+        raise TornilloError("only Linux has udev", "nothing to do: the port can be used as it is")
+    path = place(root)
+    if root == ROOT and not path.parent.is_dir() and shutil.which(UDEVADM) is None:
+        raise TornilloError(
+            f"there is no {path.parent}: this computer has no udev",
+            "no rule can help; give the user the right to open the port in another way",
         )
     try:
-        path.write_text(RULE, encoding="ascii")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(rule(), encoding="utf-8")
     except PermissionError as error:
-        raise PortError(
-            f"no permission to write {path}", f"run `sudo {Path(sys.argv[0]).absolute()} udev`"
+        raise TornilloError(f"this user may not write {path}", f"type `{COMMAND}`") from error
+    except OSError as error:
+        raise TornilloError(
+            f"{path} cannot be written: {error.strerror}",
+            "print the rule with `tornillo udev` and put it there by hand",
         ) from error
-    if folder == RULES_FOLDER and shutil.which("udevadm"):
-        for command in RELOAD:
-            subprocess.run(command, check=False)
+    if root == ROOT:
+        _reload()
     return path
+
+
+def _reload() -> None:
+    """Have a running udev read its rules and go over the ports; else it does when it starts."""
+    program = shutil.which(UDEVADM)
+    if program is not None:
+        for words in RELOAD:
+            command = [program, *words]
+            subprocess.run(command, capture_output=True, timeout=UDEVADM_S, check=False)

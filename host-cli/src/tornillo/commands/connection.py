@@ -24,8 +24,13 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON f
 def connected() -> Iterator[Lathe]:
     """The lathe at the port of the command line."""
     port = click.get_current_context().find_object(str)
-    with Lathe.open(port) as lathe:
+    with Lathe.open(port, notify=_tell) as lathe:
         yield lathe
+
+
+def _tell(line: str) -> None:
+    """Say why it takes longer."""
+    click.echo(line, err=True)
 
 
 def print_json(value: object) -> None:

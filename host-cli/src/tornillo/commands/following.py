@@ -2,7 +2,6 @@
 """Wait for a run or a homing to end, showing its progress; Ctrl-C holds or stops it."""
 
 import sys
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -26,8 +25,8 @@ def follow_homing(lathe: Lathe) -> Status:
     Raises AlarmError when it failed, TornilloError after Ctrl-C.
     """
     try:
-        while (status := lathe.status()).state is State.HOMING:
-            time.sleep(POLL_S)
+        with lathe.watch(lambda status: status.state is not State.HOMING, POLL_S) as watch:
+            status = watch.wait()
     except KeyboardInterrupt:
         lathe.stop()
         raise TornilloError(
@@ -58,16 +57,22 @@ def follow_run(lathe: Lathe) -> None:
 
 
 def _until_standing(lathe: Lathe, show: Display) -> Status:
-    """Poll until the run has ended; what a pause asks for is read from the part once."""
+    """Watch until the run has ended; what a pause asks for is read from the part once."""
     asked: dict[int, str] = {}
-    while (status := lathe.status()).under_way:
+
+    def show_status(status: Status) -> bool:
+        if not status.under_way:
+            return True
         text = describe(status)
         if status.state is State.PAUSE:
             if status.operation not in asked:
                 asked[status.operation] = pause_message(lathe, status)
             text += f": {asked[status.operation]}; go on with RUN or `tornillo resume`"
         show(status.permille, text)
-        time.sleep(POLL_S)
+        return False
+
+    with lathe.watch(show_status, POLL_S) as watch:
+        status = watch.wait()
     if status.finished:
         show(PERMILLE_DONE, "finished")
     return status

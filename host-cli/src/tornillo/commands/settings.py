@@ -30,7 +30,6 @@ def settings(context: click.Context, as_json: bool) -> None:
     Examples: tornillo settings
               tornillo settings get zero_z
               tornillo settings set rapid_rate_x 900
-              tornillo settings serial TN-00042
     """
     if context.invoked_subcommand is not None:
         return
@@ -78,22 +77,6 @@ def set_setting(name: str, value: int) -> None:
             )
         lathe.set_setting(entry.id, value)
     click.echo(f"{name} was {now.value}, is {value} {entry.unit}".rstrip())
-
-
-@settings.command("serial")
-@click.argument("number", required=False)
-def serial_number(number: str | None) -> None:
-    """Print the serial number of the lathe, or change it to NUMBER (8 characters).
-
-    With several lathes at one computer it tells them apart.
-    """
-    with connected() as lathe:
-        before = lathe.serial_number
-        if number is None:
-            click.echo(before)
-            return
-        lathe.set_serial_number(number)
-        click.echo(f"the serial number was {before}, is {lathe.serial_number}")
 
 
 def _named(name: str) -> Setting:

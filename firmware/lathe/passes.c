@@ -27,7 +27,8 @@ enum stage {
     STAGE_OUT,    /* away from the work */
     STAGE_PARK_X,
     STAGE_PARK_Z,
-    STAGE_PARKED
+    STAGE_PARKED,
+    STAGE_TOLD /* that the chain ends at park */
 };
 
 uint8_t passes_more;
@@ -358,12 +359,13 @@ static void move(void)
 uint8_t passes_source(void)
 {
     parts_open(slot_cut);
-    if (stage == STAGE_PARKED && passes_more) {
+    if (stage == STAGE_TOLD && passes_more) {
         parked = 1;
         stage = STAGE_RECORD;
     }
     do {
-        if (stage == STAGE_PARKED) {
+        if (stage >= STAGE_PARKED) {
+            stage = STAGE_TOLD;
             return 0;
         }
         segment(0);

@@ -27,7 +27,7 @@ enum stage {
     STAGE_OUT,    /* away from the work */
     STAGE_PARK_X,
     STAGE_PARK_Z,
-    STAGE_PARKED
+    STAGE_PARKED,
 };
 
 uint8_t passes_more;

@@ -134,7 +134,7 @@ def test_parts_are_listed_for_people_and_for_scripts(tornillo: Tornillo, test_ba
     listed = tornillo("parts").stdout
     assert "test-bar" in listed
     assert "selected" in listed
-    assert "11 of 12 units of the store are free" in listed
+    assert "11 of 12 units of the store are free; a part takes 1 to 10\n" in listed
     [part] = json.loads(tornillo("parts", "--json").stdout)
     assert (part["slot"], part["name"], part["selected"]) == (0, "test-bar", True)
 

@@ -8,6 +8,11 @@ from tornillo.protocol import PART_UNIT, PartInfoData
 UNIT_HEADER = 64  # bytes in the first unit of a part
 
 
+def units_of(length: int) -> int:
+    """Units of the store that an image of `length` bytes takes."""
+    return -(-(length + UNIT_HEADER) // PART_UNIT)
+
+
 @dataclass(frozen=True)
 class StoredPart:
     """One part in the store; `slot` is its first unit.
@@ -26,7 +31,7 @@ class StoredPart:
     @property
     def units(self) -> int:
         """Units of the store that the part takes."""
-        return -(-(self.length + UNIT_HEADER) // PART_UNIT)
+        return units_of(self.length)
 
     @classmethod
     def from_info(cls, slot: int, info: PartInfoData) -> "StoredPart":

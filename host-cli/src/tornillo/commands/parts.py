@@ -18,7 +18,9 @@ from tornillo.errors import ChipError, PartError, TornilloError
 from tornillo.machine import Machine
 from tornillo.part import Part
 from tornillo.part_writer import part_text
+from tornillo.protocol import PART_IMAGE_MAX
 from tornillo.protocol_texts import REFUSAL_TEXTS
+from tornillo.stored import units_of
 from tornillo.toml_lines import Place
 
 file_argument = click.argument("file", type=click.Path(dir_okay=False))
@@ -121,7 +123,8 @@ def list_parts(as_json: bool) -> None:
             for part in stored
         )
         free = slots - sum(part.units for part in stored)
-        click.echo(f"{free} of {slots} units of the store are free; a part takes 1 to 5")
+        most = units_of(PART_IMAGE_MAX)
+        click.echo(f"{free} of {slots} units of the store are free; a part takes 1 to {most}")
 
 
 @click.command()

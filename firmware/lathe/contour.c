@@ -243,7 +243,7 @@ int16_t contour_highest(int16_t z_high, int16_t z_low)
     while (low < high) { /* 15 times at most */
         int16_t middle = low + ((uint16_t)(high - low) >> 1);
 
-        path_make();
+        path_bridge();
         if (contour_material(middle, z_high) <= z_low) {
             high = middle;
         } else {

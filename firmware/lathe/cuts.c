@@ -177,7 +177,7 @@ static uint8_t next_facing(void)
         low = start_x;
         high = top;
         while (low < high) {
-            path_make();
+            path_bridge();
             middle = low + ((uint16_t)(high - low) >> 1);
             contour_stretch(middle, FARTHEST);
             if (contour_e <= cuts_z) {
@@ -235,7 +235,7 @@ static uint8_t next_along(void)
         return 0; /* all pockets are done */
     }
     while (next_stretch()) {
-        path_make();
+        path_bridge();
         if (cuts_rise < level_at(level - 1) + part_retract) {
             cuts_rise = level_at(level - 1) + part_retract;
         }

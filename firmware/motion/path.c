@@ -13,6 +13,11 @@
    the link, and still keeps ahead of 60,000 entries/s. */
 #define BATCH 64
 
+/* While the source computes for long the tool waits behind the last segment
+   known, from so many entries left on. */
+#define BRIDGE_FILL 32
+#define BRIDGE_MS 50
+
 /* More than a bank: placed by hand, see tornillo.lkr. */
 struct segment __at(0x500) segments[SEGMENTS];
 uint32_t segment_speed[SEGMENTS];
@@ -30,7 +35,10 @@ uint16_t motion_dead_z;
 
 static uint8_t complete; /* path_source() has no more */
 static uint8_t ended;    /* the end has been pushed */
-static uint8_t started;  /* the interrupt has been set going */
+/* The interrupt has been set going; WAITS: it finds a wait behind the last
+   step. */
+static uint8_t started;
+#define WAITS 2
 static uint8_t begun;    /* path_made has been begun */
 
 static uint16_t smaller_setting(uint8_t one, uint8_t other)
@@ -169,6 +177,9 @@ static uint8_t next_segment(void)
         segment->end = entries_made + segment->count;
     }
     begun = 1;
+    if (started) {
+        started = 1;
+    }
     copy_from = (__data const uint8_t *)segment;
     copy_to = (__data uint8_t *)&path_present;
     copy_segment();
@@ -176,17 +187,19 @@ static uint8_t next_segment(void)
     return 1;
 }
 
-void path_make(void)
+/* Returns 1 when the segments that are there have all been generated. */
+static uint8_t make(void)
 {
+    uint8_t bare = 0;
     uint8_t budget = BATCH;
     uint8_t room;
     uint8_t done;
 
     if (ended) {
-        return;
+        return 0;
     }
     if (!started && !complete && after(path_head) != ramp_segment) {
-        return; /* look ahead as far as possible before the first step */
+        return 0; /* look ahead as far as possible before the first step */
     }
     while (budget != 0 && !ended && !path_refused) {
         room = stream_room();
@@ -197,6 +210,7 @@ void path_make(void)
         done = entries_make(room < budget ? room : budget);
         if (done == ENTRIES_COMPLETE) {
             done = next_segment();
+            bare = done == 0;
         }
         if (done == 0) {
             break;
@@ -204,7 +218,7 @@ void path_make(void)
         budget -= done;
     }
     if (path_refused || (!started && ramp_holding())) {
-        return;
+        return 0;
     }
     if (!started && (ended || stream_fill() >= STREAM_ENTRIES / 2)) {
         started = 1;
@@ -213,12 +227,25 @@ void path_make(void)
     } else if (started && !ended && stream_fill() < stream_low) {
         stream_low = stream_fill();
     }
+    return bare;
+}
+
+/* The last step before the queue's end is slow enough to stop behind it, so
+   the tool may stand there. */
+void path_bridge(void)
+{
+    if (make() && started && !ended &&
+        stream_fill() < (started == WAITS ? 1 : BRIDGE_FILL)) {
+        stream_push(STREAM_WAIT, BRIDGE_MS);
+        plan_begin();
+        started = WAITS;
+    }
 }
 
 void path_poll(void)
 {
     if (!ended) {
         accept();
-        path_make();
+        make();
     }
 }

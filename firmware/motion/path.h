@@ -87,8 +87,10 @@ void path_begin(void);
 /* Plans and generates as far as there is room; every main loop turn. */
 void path_poll(void);
 
-/* Generates alone: for a path_source() that computes for long. */
-void path_make(void);
+/* Generates alone, for a path_source() that computes for long: called every
+   50 ms or oftener it lets the tool stand where the queue ends, and the stream
+   not run dry. */
+void path_bridge(void);
 
 /* True from path_begin() until the last step has been made. */
 uint8_t path_busy(void);

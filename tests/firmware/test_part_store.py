@@ -13,10 +13,13 @@ from simulated.processes import branch, on_a_new_chip
 from tornillo.errors import ChipError
 from tornillo.frames import crc16
 from tornillo.link import Link
-from tornillo.protocol import Command, ErrorCode, State
+from tornillo.image import CENTRE_UNIT, Record, Segment, SegmentKind
+from tornillo.protocol import PART_IMAGE_MAX, PART_SLOTS, PART_UNIT, Command, ErrorCode, State
 from virtual_lathe.chip import NonVolatile
 
-SEVEN = [f"part-{number}" for number in range(1, 8)]
+EVERY = [f"part-{number:02}" for number in range(1, PART_SLOTS + 1)]
+EIGHT = EVERY[:8]
+STORE_BEGIN, UNIT_HEADER = 0x7400, 64
 
 
 def names(bench: Bench) -> list[str]:
@@ -30,13 +33,29 @@ def selected(bench: Bench) -> str:
     return chosen
 
 
-def full_store() -> Bench:
-    """Return a lathe with seven parts."""
+def stored(parts: list[str]) -> Bench:
+    """Return a lathe with these parts, of one unit each, and no other."""
     bench = little_pin.lathe_with_pin()
     bench.host.delete(bench.host.find("little-pin").slot)
-    for number, name in enumerate(SEVEN):
+    for number, name in enumerate(parts):
         bench.host.upload(little_pin.image(name, depth_of_cut=10 + number))
     return bench
+
+
+def of_length(units: int) -> bytes:
+    """Return a part that takes so many units to the last byte, named after their number."""
+    length = min(units * PART_UNIT - UNIT_HEADER, PART_IMAGE_MAX)
+    spare = length - len(little_pin.image())
+    pauses: list[Record] = []
+    while spare:
+        size = min(36, spare if spare <= 36 or spare > 40 else spare - 4)
+        pauses.append(little_pin.pause("m" * (size - 4)))
+        spare -= size
+    if len(pauses) > 60:
+        raise ValueError("too many operations")
+    image = little_pin.image(f"units-{units}", (*pauses, *little_pin.OPERATIONS))
+    assert len(image) == length
+    return image
 
 
 @on_a_new_chip
@@ -52,11 +71,13 @@ def test_a_part_is_read_back_as_it_was_sent_and_survives_power_cycles() -> None:
 @on_a_new_chip
 def test_the_longest_part_can_be_stored_and_read_back() -> None:
     bench = little_pin.lathe_with_pin()
-    operations = little_pin.OPERATIONS[:1] * 20 + little_pin.OPERATIONS[1:] * 28
-    image = little_pin.image("long", operations)
+    bench.host.delete(bench.host.find("little-pin").slot)
+    image = of_many_segments()
     slot = bench.host.upload(image)
     assert bench.host.read(slot) == image
-    assert bench.host.part(slot) is not None
+    part = bench.host.part(slot)
+    assert part is not None
+    assert (part.length, part.operations) == (PART_IMAGE_MAX, 64)
     bench.home()
     bench.host.run(slot)
     bench.wait_for(State.IDLE)
@@ -64,46 +85,120 @@ def test_the_longest_part_can_be_stored_and_read_back() -> None:
     little_pin.assert_cut_exactly(bench)
 
 
+def of_many_segments() -> bytes:
+    """Return the little pin as the longest image: 64 operations, 380 segments.
+
+    Behind its face and its cylinder nothing comes that would still be there to cut.
+    """
+    up, along = little_pin.line(0, 1), little_pin.line(-1, 0)
+    stairs = [little_pin.contour(-5, 40, *[along, up] * 3, *[along] * (n < 11)) for n in range(61)]
+    corner = Segment(SegmentKind.CONVEX, -4, 4, -4 * CENTRE_UNIT, 0)
+    operations = (*little_pin.OPERATIONS, *stairs, little_pin.contour(-5, 40, corner))
+    return little_pin.image("long", operations)
+
+
 @on_a_new_chip
-def test_seven_names_fit_and_the_eighth_is_refused_but_each_can_be_replaced() -> None:
-    bench = full_store()
+def test_twelve_small_parts_fit_and_the_next_one_is_refused() -> None:
+    bench = stored(EVERY)
     host = bench.host
-    assert names(bench) == SEVEN
-    refused = bench.refusal(lambda: host.upload(little_pin.image("part-8")))
-    assert refused is ErrorCode.STORE_FULL
-    assert names(bench) == SEVEN
-    for name in SEVEN:
+    assert names(bench) == EVERY
+    for name in ("one-more", EVERY[4]):
+        upload = partial(host.upload, little_pin.image(name, depth_of_cut=25))
+        assert bench.refusal(upload) is ErrorCode.STORE_FULL
+    assert names(bench) == EVERY
+    host.delete(host.find(EVERY[2]).slot)
+    host.upload(little_pin.image("one-more"))
+    bench.power_cycle()
+    assert names(bench) == sorted({*EVERY, "one-more"} - {EVERY[2]})
+
+
+@on_a_new_chip
+def test_each_of_eight_parts_can_be_replaced() -> None:
+    bench = stored(EIGHT)
+    host = bench.host
+    for name in EIGHT:
         image = little_pin.image(name, depth_of_cut=25)
         assert host.read(host.upload(image)) == image
-        assert names(bench) == SEVEN
+        assert names(bench) == EIGHT
         assert selected(bench) == name
-    host.delete(host.find("part-3").slot)
-    host.upload(little_pin.image("part-8"))
-    assert "part-8" in names(bench)
+
+
+@on_a_new_chip
+def test_each_of_eight_parts_is_cut_by_the_button_once_it_is_selected() -> None:
+    bench = stored(EIGHT)
+    bench.home()
+    for name in (EIGHT[0], EIGHT[7], EIGHT[3]):
+        slot = bench.host.find(name).slot
+        bench.host.select(slot)
+        bench.press("run")
+        assert (bench.state, bench.status().slot) == (State.RUNNING, slot)
+        bench.wait_for(State.IDLE)
+        assert bench.status().finished
+    little_pin.assert_cut_exactly(bench)
+
+
+@on_a_new_chip
+def test_long_parts_take_units_side_by_side_and_go_where_they_first_fit() -> None:
+    bench = stored([])
+    host = bench.host
+    images = {units: of_length(units) for units in (1, 2, 3, 4, 5)}
+    slots = {units: host.upload(images[units]) for units in (3, 1, 4, 2)}
+    assert slots == {3: 0, 1: 3, 4: 4, 2: 8}
+    assert bench.refusal(partial(host.upload, images[5])) is ErrorCode.STORE_FULL
+    host.delete(slots[1])
+    host.delete(slots[3])
+    assert bench.refusal(partial(host.upload, images[5])) is ErrorCode.STORE_FULL
+    host.delete(slots[2])
+    assert host.upload(little_pin.image()) == 0
+    assert host.upload(images[3]) == 1
+    assert bench.refusal(partial(host.upload, images[5])) is ErrorCode.STORE_FULL
+    host.delete(slots[4])
+    assert host.upload(images[5]) == 4
     bench.power_cycle()
-    assert names(bench) == sorted({*SEVEN, "part-8"} - {"part-3"})
+    assert {part.slot: part.name for part in bench.host.parts()} == {
+        0: "little-pin",
+        1: "units-3",
+        4: "units-5",
+    }
+    assert bench.host.read(1) == images[3]
+    assert bench.host.read(4) == images[5]
+    assert bench.host.read(0) == little_pin.image()
+
+
+@on_a_new_chip
+def test_a_long_part_is_not_stored_over_one_behind_the_free_units() -> None:
+    bench = stored(EVERY)
+    host = bench.host
+    for slot in (1, 2, 3, 5, 6, 11):
+        host.delete(slot)
+    kept = {part.slot: host.read(part.slot) for part in host.parts()}
+    assert bench.refusal(partial(host.upload, of_length(4))) is ErrorCode.STORE_FULL
+    assert host.upload(of_length(3)) == 1
+    assert host.upload(of_length(2)) == 5
+    assert bench.refusal(partial(host.upload, of_length(2))) is ErrorCode.STORE_FULL
+    assert {slot: host.read(slot) for slot in kept} == kept
 
 
 @on_a_new_chip
 def test_the_selected_part_is_remembered_and_falls_back_to_the_newest() -> None:
-    bench = full_store()
+    bench = stored(EIGHT)
     host = bench.host
-    assert selected(bench) == "part-7"
-    host.select(host.find("part-2").slot)
+    assert selected(bench) == "part-08"
+    host.select(host.find("part-02").slot)
     bench.power_cycle()
-    assert selected(bench) == "part-2"
-    bench.host.delete(bench.host.find("part-2").slot)
-    assert selected(bench) == "part-7"
-    bench.host.delete(bench.host.find("part-7").slot)
-    assert selected(bench) == "part-6"
-    assert bench.status().slot == bench.host.find("part-6").slot
+    assert selected(bench) == "part-02"
+    bench.host.delete(bench.host.find("part-02").slot)
+    assert selected(bench) == "part-08"
+    bench.host.delete(bench.host.find("part-08").slot)
+    assert selected(bench) == "part-07"
+    assert bench.status().slot == bench.host.find("part-07").slot
 
 
 @on_a_new_chip
 def test_deleting_and_selecting_what_is_not_there_is_refused() -> None:
     bench = little_pin.lathe_with_pin()
-    empty = (bench.host.find("little-pin").slot + 1) % 8
-    for slot in (empty, 8, 255):
+    empty = (bench.host.find("little-pin").slot + 1) % PART_SLOTS
+    for slot in (empty, PART_SLOTS, 255):
         assert bench.refusal(partial(bench.host.delete, slot)) is ErrorCode.NO_PART
         assert bench.refusal(partial(bench.host.select, slot)) is ErrorCode.NO_PART
     assert names(bench) == ["little-pin"]
@@ -122,7 +217,7 @@ def test_run_with_a_slot_cuts_that_part_and_not_the_selected_one() -> None:
 
 def slot_at(slot: int) -> int:
     """Address of a slot in flash."""
-    return 0x6000 + 1024 * slot
+    return STORE_BEGIN + PART_UNIT * slot
 
 
 def header(generation: int, image: bytes) -> bytes:
@@ -135,7 +230,7 @@ def store(bench: Bench, slot: int, generation: int, image: bytes) -> None:
     """Put a part straight into the flash, and forget which one was selected."""
     memory = bench.chip.save()
     flash = bytearray(memory.flash)
-    content = header(generation, image).ljust(64, b"\xff") + image
+    content = header(generation, image).ljust(UNIT_HEADER, b"\xff") + image
     flash[slot_at(slot) : slot_at(slot) + len(content)] = content
     eeprom = memory.eeprom[:0xE0] + b"\xff" + memory.eeprom[0xE1:]
     bench.chip.restore(NonVolatile(bytes(flash), eeprom))
@@ -175,11 +270,11 @@ def test_of_two_parts_with_one_name_only_the_newer_survives_the_next_start(
     [
         (Command.UPLOAD_DATA, struct.pack("<H", 0) + bytes(32), ErrorCode.NO_UPLOAD),
         (Command.UPLOAD_COMMIT, b"", ErrorCode.NO_UPLOAD),
-        (Command.UPLOAD_BEGIN, struct.pack("<HH", 55, 0), ErrorCode.OUT_OF_RANGE),
-        (Command.UPLOAD_BEGIN, struct.pack("<HH", 961, 0), ErrorCode.OUT_OF_RANGE),
+        (Command.UPLOAD_BEGIN, struct.pack("<HH", 31, 0), ErrorCode.OUT_OF_RANGE),
+        (Command.UPLOAD_BEGIN, struct.pack("<HH", PART_IMAGE_MAX + 1, 0), ErrorCode.OUT_OF_RANGE),
         (Command.UPLOAD_BEGIN, struct.pack("<H", 72), ErrorCode.BAD_LENGTH),
-        (Command.PART_READ, struct.pack("<BH", 8, 0), ErrorCode.NO_PART),
-        (Command.PART_INFO, b"\x08", ErrorCode.OUT_OF_RANGE),
+        (Command.PART_READ, struct.pack("<BH", PART_SLOTS, 0), ErrorCode.NO_PART),
+        (Command.PART_INFO, bytes([PART_SLOTS]), ErrorCode.OUT_OF_RANGE),
         (Command.STATUS, b"\x00", ErrorCode.BAD_LENGTH),
     ],
 )
@@ -210,7 +305,7 @@ def test_reading_beside_or_behind_a_part_is_refused() -> None:
     assert read(slot, length // 32 * 32) is ErrorCode.OK
     assert read(slot, (length // 32 + 1) * 32) is ErrorCode.BAD_OFFSET
     assert read(slot, 1) is ErrorCode.BAD_OFFSET
-    assert read((slot + 1) % 8, 0) is ErrorCode.NO_PART
+    assert read((slot + 1) % PART_SLOTS, 0) is ErrorCode.NO_PART
 
 
 @on_a_new_chip
@@ -236,6 +331,7 @@ def test_pieces_of_an_upload_must_come_whole_and_in_order() -> None:
     assert data(32) is ErrorCode.OK
     assert commit() is ErrorCode.BAD_LENGTH
     assert data(64) is ErrorCode.OK
+    assert data(96) is ErrorCode.OK
     assert commit() is ErrorCode.OK
     assert commit() is ErrorCode.NO_UPLOAD
     assert names(bench) == ["little-pin", "other"]

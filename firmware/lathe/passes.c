@@ -27,7 +27,7 @@ enum stage {
     STAGE_OUT,    /* away from the work */
     STAGE_PARK_X,
     STAGE_PARK_Z,
-    STAGE_PARKED,
+    STAGE_PARKED
 };
 
 uint8_t passes_more;
@@ -339,7 +339,8 @@ static void move(void)
             cuts_rise = cuts_x + part_retract; /* where the tool is */
             rapid_x(cuts_rise);
         } else if (cuts_kind == CUT_FACING) {
-            rapid_z(cuts_z + part_retract);
+            feed(); /* what its back edge has left is in the way */
+            to_z(cuts_z + part_retract);
         } else {
             rapid_x(cuts_height);
         }

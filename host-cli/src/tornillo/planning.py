@@ -223,7 +223,7 @@ class Planner:
             self.path.rapid_z(level)
             self.path.sink(top + self.retract)
             self.path.feed_x(inner, self.cut.feed)
-            self.path.rapid_z(level + self.retract)
+            self.path.feed_z(level + self.retract, self.cut.feed)
             yield self._pass(Role.FACING, depth)
 
     def _along_contour(

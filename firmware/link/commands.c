@@ -2,7 +2,7 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "link/commands.h"
-#include "lathe/machine.h"    /* state, actions */
+#include "lathe/machine.h" /* state, actions */
 #include "lathe/part.h"
 #include "lathe/part_check.h" /* upload, max rate */
 #include "lathe/passes.h"     /* progress */
@@ -346,8 +346,8 @@ uint8_t commands_execute(void)
         error = machine_home();
         break;
     case COMMAND_RUN:
-        error = machine_run(frame_payload[RUN_SLOT_AT],
-                            frame_payload[RUN_STEP_AT]);
+        error =
+            machine_run(frame_payload[RUN_SLOT_AT], frame_payload[RUN_STEP_AT]);
         break;
     case COMMAND_HOLD:
         error = machine_hold();

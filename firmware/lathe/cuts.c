@@ -28,13 +28,13 @@ static uint8_t roughing; /* CUT_ALONG, CUT_FACING or CUT_PLUNGE */
 static uint8_t follows;  /* passes along the contour to come */
 static int16_t start_x;
 static int16_t end_z;
-static int16_t top; /* largest radius left over the operation */
+static int16_t top;      /* largest radius left over the operation */
 static uint16_t allowance;
 static int16_t from;        /* level 0 */
 static uint16_t step_depth; /* from level to level */
 static uint16_t deeper;     /* levels that take one step more */
 static uint16_t levels;
-static uint16_t level; /* 1.. */
+static uint16_t level;      /* 1.. */
 static int16_t done;   /* in front of it everything is at its bottom */
 static int16_t last_e; /* of the stretch cut last */
 

@@ -2,13 +2,13 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "lathe/contour.h"
-#include "arithmetic.h"     /* products */
-#include "lathe/part.h"     /* records */
-#include "link/protocol.h"  /* types */
-#include "motion/arc.h"     /* root */
-#include "motion/path.h"    /* kinds of segment, feeding the stream */
-#include "store/flash.h"    /* reading numbers */
-#include "store/parts.h"    /* where the image is */
+#include "arithmetic.h"    /* products */
+#include "lathe/part.h"    /* records */
+#include "link/protocol.h" /* types */
+#include "motion/arc.h"    /* root */
+#include "motion/path.h"   /* kinds of segment, feeding the stream */
+#include "store/flash.h"   /* reading numbers */
+#include "store/parts.h"   /* where the image is */
 
 #define EVERYWHERE 32767
 #define NOWHERE (-32767 - 1)
@@ -36,7 +36,7 @@ int16_t contour_s;
 int16_t contour_e;
 uint8_t contour_contains;
 
-static uint16_t end; /* of the record; 0 = a line to contour_to_z */
+static uint16_t end;   /* of the record; 0 = a line to contour_to_z */
 static uint16_t width; /* of the tool of the record being asked */
 
 static uint16_t size(int16_t value)

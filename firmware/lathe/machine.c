@@ -25,8 +25,8 @@ uint8_t machine_alarm_detail;
 uint8_t machine_homed;
 uint8_t machine_slot;
 
-static uint8_t finished;        /* the last run came to its end */
-static uint16_t moved_at;       /* when something last moved, ms */
+static uint8_t finished;  /* the last run came to its end */
+static uint16_t moved_at; /* when something last moved, ms */
 
 static void arm(void)
 {

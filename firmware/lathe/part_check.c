@@ -232,9 +232,9 @@ static uint16_t root(uint32_t square)
 static uint8_t arc_valid(void)
 {
     uint16_t radius = root(contour_square);
-    uint16_t off = root(contour_squared(contour_to_x) +
-                        contour_squared(contour_to_z)) -
-                   radius + 2;
+    uint16_t off =
+        root(contour_squared(contour_to_x) + contour_squared(contour_to_z)) -
+        radius + 2;
     int16_t from_x = contour_from_x;
     int16_t to_x = contour_to_x;
 
@@ -301,8 +301,7 @@ static uint8_t check_segment(void)
         return REFUSAL_OPERATION_SIZE;
     }
     contour_next();
-    if (contour_dz > 0 ||
-        ((part_kind & CONTOUR_FACING) && contour_dx < 0)) {
+    if (contour_dz > 0 || ((part_kind & CONTOUR_FACING) && contour_dx < 0)) {
         return REFUSAL_DIRECTION;
     }
     if (contour_dx == 0 && contour_dz == 0) {
@@ -327,7 +326,7 @@ static uint8_t check_contour(void)
     uint8_t reason;
 
     if ((part_kind & CONTOUR_KIND) > KIND_LAST ||
-        (part_kind & (uint8_t)~(CONTOUR_KIND | CONTOUR_FACING))) {
+        (part_kind & (uint8_t) ~(CONTOUR_KIND | CONTOUR_FACING))) {
         return REFUSAL_FORMAT;
     }
     if (part_width != 0) {

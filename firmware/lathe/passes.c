@@ -177,9 +177,9 @@ static void take_record(void)
     part_record = contour_own;
     part_read_record();
     own_size = part_size;
-    if (part_type == OPERATION_TOOL ? contour_own != PART_IMAGE_HEADER_SIZE
-                                    : part_type != OPERATION_CUT && stepping &&
-                                          operation != 0) {
+    if (part_type == OPERATION_TOOL
+            ? contour_own != PART_IMAGE_HEADER_SIZE
+            : part_type != OPERATION_CUT && stepping && operation != 0) {
         if (!parked) {
             stage = STAGE_PARK_X;
             return;

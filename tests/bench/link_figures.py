@@ -8,7 +8,7 @@ from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import branch
 from tornillo.frames import Frame, encode
-from tornillo.protocol import FRAME_PAYLOAD_MAX, CylinderRecord, FaceRecord
+from tornillo.protocol import FRAME_PAYLOAD_MAX
 
 OPERATIONS = 30
 FRAMES = 500
@@ -25,8 +25,8 @@ def link_figures() -> Figures:
 
 def _measure() -> Figures:
     bench = little_pin.lathe_with_pin()
-    steps = (CylinderRecord(-2 * i, -2 * i - 2, 20 + i) for i in range(OPERATIONS - 1))
-    image = little_pin.image("thirty", (FaceRecord(0, 0), *steps))
+    steps = (little_pin.cylinder(-2 * i, -2 * i - 2, 20 + i) for i in range(OPERATIONS - 1))
+    image = little_pin.image("thirty", (little_pin.face(0, 0), *steps))
     start = bench.lathe.seconds
     slot = bench.host.upload(image)
     if bench.host.read(slot) != image:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from tornillo import Lathe, Part
-from tornillo.protocol import PERMILLE_DONE, State
+from tornillo.protocol import FEED_UNIT, PERMILLE_DONE, CutRecord, State
 from tornillo.status import Status
 from virtual_lathe import decode_vcd
 from virtual_lathe.chip import CYCLES_PER_SECOND
@@ -102,7 +102,9 @@ def cut_test_bar() -> Figures:
         lathe.chip.close_vcd()
         if status.permille != PERMILLE_DONE:
             raise BenchError(f"the test bar was not finished: {status}")
-        figures |= _speed(trace, part.steps(chip.machine()).header.feed)
+        _, cut, *_ = part.steps(chip.machine()).records
+        assert isinstance(cut, CutRecord)
+        figures |= _speed(trace, cut.feed)
     figures["stream_low_entries"] = status.stream_low
     figures["isr_worst_cycles"] = lathe.chip.interrupt_cost(high=True).worst
     figures["low_isr_worst_cycles"] = lathe.chip.interrupt_cost(high=False).worst
@@ -121,11 +123,11 @@ def _follow(lathe: VirtualLathe, chip: Lathe, state: State) -> Status:
 
 
 def _speed(trace: Path, feed: int) -> Figures:
-    """Regularity and mean error of the cutting speed behind its ramps; `feed` in 1/256 step/s.
+    """Regularity and mean error of the cutting speed behind its ramps; `feed` in 1/8 step/s.
 
     Planned is a whole number of cycles for each step, begun anew with each move.
     """
-    period = CYCLES_PER_SECOND * 256 // feed
+    period = CYCLES_PER_SECOND * FEED_UNIT // feed
     late: list[int] = []
     means: list[float] = []
     for move in _moves(trace):
@@ -138,7 +140,7 @@ def _speed(trace: Path, feed: int) -> Figures:
         means.append(statistics.mean(intervals[even[0] : even[-1] + 1]))
     if not means:
         raise BenchError("no cutting move found in the trace")
-    wanted = CYCLES_PER_SECOND * 256 / feed
+    wanted = CYCLES_PER_SECOND * FEED_UNIT / feed
     return {
         "step_jitter_max_cycles": max(abs(cycles) for cycles in late),
         "feed_error_ppm": round((wanted / statistics.mean(means) - 1) * 1e6, 1),

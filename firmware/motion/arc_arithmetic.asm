@@ -40,8 +40,7 @@ _arc_root       res 2                   ; R / sqrt(2), scaled
 _arc_shift      res 1                   ; scaled = number >> shift, 16 bits
 _arc_scaled_p   res 2                   ; |p|
 _arc_border     res 2                   ; steps from p to R / sqrt(2)
-_arc_signs      res 1                   ; bit 0 p < 0, 1 m < 0, 2 |p| > |m|,
-                                        ; 3 |p| = |m|, 4 goal m > 0
+_arc_signs      res 1                   ; P_NEGATIVE and so on of arc.c
 _arc_missed     res 4
 factor          res 4
 _root_of

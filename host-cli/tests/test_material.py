@@ -44,8 +44,8 @@ BAR = chain_of(0, 200, [line(-400, 0)])
 
 def test_an_arc_over_its_top_is_two_pieces_and_others_are_one() -> None:
     assert [(sub.zs, sub.xs, sub.ze, sub.xe) for sub in BALL.subs] == [
-        (100, 0, 0, 100),
-        (0, 100, -100, 0),
+        (100, 0, 0, 101),
+        (0, 101, -100, 0),
     ]
     assert len(pieces(100, 0, arc(CONVEX, -100, 100, -100, 0))) == 1
     assert len(pieces(0, 0, line(-7, 3))) == 1
@@ -64,7 +64,7 @@ def test_the_centre_is_rounded_to_the_nearest_step(cz: int, apex_z: int) -> None
 
 def test_a_chain_knows_its_ends_and_extremes() -> None:
     assert (NECK.z_end, NECK.x_end, NECK.lowest, NECK.highest) == (-350, 300, 100, 300)
-    assert (BALL.z_end, BALL.x_end, BALL.lowest, BALL.highest) == (-100, 0, 0, 100)
+    assert (BALL.z_end, BALL.x_end, BALL.lowest, BALL.highest) == (-100, 0, 0, 101)
     empty = Chain(False, 3, 4, ())
     assert (empty.z_end, empty.x_end, empty.lowest, empty.highest) == (3, 4, 4, 4)
 

@@ -340,7 +340,7 @@ static void move(void)
             rapid_x(cuts_rise);
         } else if (cuts_kind == CUT_FACING) {
             rapid_z(cuts_z + part_retract);
-        } else {
+        } else if (below(cuts_height) > 0) {
             rapid_x(cuts_height);
         }
         break;
@@ -358,12 +358,12 @@ static void move(void)
 uint8_t passes_source(void)
 {
     parts_open(slot_cut);
-    if (stage == STAGE_PARKED && passes_more) {
-        parked = 1;
-        stage = STAGE_RECORD;
-    }
     do {
         if (stage == STAGE_PARKED) {
+            if (passes_more) { /* for the next chain */
+                parked = 1;
+                stage = STAGE_RECORD;
+            }
             return 0;
         }
         segment(0);

@@ -148,10 +148,14 @@ class Planner:
             front = self.material.stock_front
             top = self.material.highest(front, chain.z_end, self.tool.below)
             begin = self.material.free_end(chain.x, front)
+            if begin <= chain.z_end:
+                return
             yield from self._rough_facing(chain, top, begin, allowance)
         else:
             top = self.material.highest(chain.z, chain.z_end, self.tool.below)
             begin = self.material.free_end(chain.x, chain.z + self.retract)
+            if top <= chain.lowest:
+                return
             allowance = min(allowance, max(0, top - chain.lowest))
             yield from self._rough_along(chain, top, allowance)
         if not (chain.simple and allowance == 0):
@@ -199,6 +203,7 @@ class Planner:
                 continue
             self.path.rise(top + self.retract)
             self.path.rapid_z(level)
+            self.path.rapid_x(top + self.retract)
             self.path.feed_x(inner, self.cut.feed)
             self.path.rapid_z(level + self.retract)
             yield self._pass(Role.FACING, depth)
@@ -221,6 +226,7 @@ class Planner:
                 self.path.rapid_x(chain.x + offset)
                 self.path.feed_z(chain.z, feed)
             else:
+                self.path.rapid_x(top + self.retract)
                 self.path.feed_x(chain.x + offset, feed)
             self.path.follow(record.segments, feed)
             self.path.rise(top + self.retract)
@@ -229,6 +235,8 @@ class Planner:
     def _plunge(self, record: PlungeRecord, chain: Chain) -> Iterator[Pass]:
         """Straight in, side by side, each place with its pecks."""
         top = self.material.highest(chain.z, chain.z_end, self.tool.below)
+        if top <= record.x:
+            return
         peck = self.cut.peck
         for place in plunge_places(record.z_high, record.z_low, self.tool.width):
             self.path.rise(top + self.retract)

@@ -12,10 +12,9 @@
         global  _arc_rest_p, _arc_rest_m, _arc_steps_p
         global  _arc_sine_step, _arc_root, _arc_signs, _arc_shift
         global  _arc_scaled_p, _arc_border, _arc_missed
-        global  _arc_enter, _arc_measure, _arc_exchange, _arc_mirror_p
-        global  _arc_mirror_m, _arc_set_up, _arc_finish
-        global  do_load, do_store, do_add, absolute, half
-        global  accumulator, value, bit_mask, kept, _root_of
+        global  _root_of, _arc_enter, _arc_measure, _arc_exchange, _arc_mirror_p
+        global  _arc_mirror_m, _arc_set_up, _arc_finish, do_load, do_store
+        global  do_add, absolute, half, accumulator, value, bit_mask, kept
         extern  scale
         extern  _run_change_major, _run_change_minor, _run_decision
         extern  _run_curve, _run_sine, _run_sine_step

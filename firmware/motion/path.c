@@ -39,7 +39,7 @@ static uint8_t ended;    /* the end has been pushed */
    step. */
 static uint8_t started;
 #define WAITS 2
-static uint8_t begun;    /* path_made has been begun */
+static uint8_t begun; /* path_made has been begun */
 
 static uint16_t smaller_setting(uint8_t one, uint8_t other)
 {

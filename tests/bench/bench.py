@@ -11,6 +11,7 @@ from link_figures import link_figures
 from measure import BenchError, Figures, command_line, cut_test_bar, sizes
 from motion_figures import motion_figures
 from page import fill
+from shape_figures import shape_figures
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "build" / "bench" / "bench.json"
@@ -30,6 +31,7 @@ def figures() -> Figures:
         **bar,
         **link_figures(),
         **motion,
+        **shape_figures(),
         "isr_worst_cycles": worst,
     }
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import statistics
 import sys
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -43,8 +44,9 @@ BRANCH_S = 900.0
 
 def shape_figures(names: tuple[str, ...] = NAMES) -> Figures:
     """Each part on a lathe of its own; the keys that the issues name, and a table of all."""
-    cut = {name: branch(lambda name=name: cut_part(name), BRANCH_S) for name in names}
+    cut = {name: branch(partial(cut_part, name), BRANCH_S) for name in names}
     found: Figures = {"shapes": cut}
+    found |= {f"{name.replace('-', '_')}_least_s": one["least_s"] for name, one in cut.items()}
     for name in MEAN_ERRORS:
         if name in cut:
             found[f"{name.replace('-', '_')}_mean_error_mm"] = cut[name]["mean_error_mm"]
@@ -72,7 +74,7 @@ def cut_part(name: str) -> dict[str, Any]:
     slot = bench.host.upload(part.image(machine))
     plan = plan_part(image, machine)
     halts = iter([stop.halt for stop in plan.stops])
-    start, waited = bench.lathe.seconds, 0.0
+    start = bench.lathe.seconds
     bench.host.run(slot)
     while True:
         bench.wait(lambda: bench.state is not State.RUNNING, TIMEOUT_S, every=0.05)
@@ -81,7 +83,7 @@ def cut_part(name: str) -> dict[str, Any]:
         if next(halts) is Halt.TOOL:
             bench.lathe.change_tool()
         bench.host.resume()
-    seconds = bench.lathe.seconds - start - waited
+    seconds = bench.lathe.seconds - start
     if not bench.status().finished:
         raise BenchError(f"{name}: {bench.state.name}, alarm {bench.alarm}")
     return judged(bench, seconds) | planned(plan)
@@ -114,4 +116,4 @@ def planned(plan: Any) -> dict[str, Any]:
 
 if __name__ == "__main__":
     for chosen in sys.argv[1:] or NAMES:
-        print(chosen, branch(lambda: cut_part(chosen), BRANCH_S), flush=True)
+        print(chosen, branch(partial(cut_part, chosen), BRANCH_S), flush=True)

@@ -26,6 +26,18 @@ FOUND = {
     "isr_worst_cycles": 96,
     "low_isr_worst_cycles": 420,
     **MOTION,
+    "shapes": {
+        "pawn": {
+            "seconds": 360.4,
+            "estimate_s": 359.8,
+            "least_s": 215.2,
+            "mean_error_mm": 0.0021,
+            "max_error_mm": 0.0061,
+            "gouge_steps": 0.486,
+            "left_steps": 0.402,
+            "crashes": 0,
+        }
+    },
     "dimensions": [{"name": "diameter", "wanted_mm": 15.24, "cut_mm": 15.2339, "error_steps": -1}],
 }
 
@@ -48,3 +60,5 @@ def test_figures_stand_beside_those_of_the_peer_with_their_units() -> None:
     assert "| upload of 30 operations, 296 bytes, and reading them back | 0.51 s |" in page
     assert "| 37.20 s, 39.10 s | 39.46 s |" in page
     assert "| test bar, diameter | 15.234 mm, error -1 steps |  |" in page
+    assert "| pawn: 360 s, planned 360 s, length of cut by feed 215 s |" in page
+    assert "gouge 0.49 steps, left 0.40, crashes 0 | S1: 227 s, largest error 0.10 mm |" in page

@@ -12,8 +12,8 @@ from simulated.bench import Bench
 from simulated.processes import branch, on_a_new_chip
 from tornillo.errors import ChipError
 from tornillo.frames import crc16
-from tornillo.link import Link
 from tornillo.image import CENTRE_UNIT, Record, Segment, SegmentKind
+from tornillo.link import Link
 from tornillo.protocol import PART_IMAGE_MAX, PART_SLOTS, PART_UNIT, Command, ErrorCode, State
 from virtual_lathe.chip import NonVolatile
 

@@ -81,6 +81,14 @@ class Check:
     broken: tuple[str, ...]
 
 
+def _settled(moves: list[Move], cycle: int) -> tuple[list[Move], list[Move]]:
+    """Divide moves at a cycle, but what both slides do in one step is not torn apart."""
+    at = sum(move.cycle <= cycle for move in moves)
+    while 0 < at < len(moves) and moves[at].cycle - moves[at - 1].cycle < SAME_STEP_CYCLES:
+        at -= 1
+    return moves[:at], moves[at:]
+
+
 class VirtualLathe:
     """A lathe with firmware in it, just switched on; time stands still until it is told to run."""
 
@@ -201,10 +209,7 @@ class VirtualLathe:
 
     def _collect(self) -> None:
         moves = self._held + self.machine.take_moves()
-        # What both slides do in one step must not be torn apart.
-        settled = self.chip.cycle - SAME_STEP_CYCLES
-        self._held = [move for move in moves if move.cycle > settled]
-        moves = moves[: len(moves) - len(self._held)]
+        moves, self._held = _settled(moves, self.chip.cycle - SAME_STEP_CYCLES)
         self.workpiece.cut(moves)
         places = {AxisName.X: [m.x for m in moves], AxisName.Z: [m.z for m in moves]}
         for name, values in places.items():

@@ -201,7 +201,7 @@ def test_order_auto_cuts_faces_cylinders_cones_arcs_then_the_others() -> None:
     [
         (-10, 15, "", False),
         (-1.1, 14.2, "", False),  # though in facing direction it takes fewer passes
-        (-0.8, 18.6, "", True),  # though along Z it takes no more passes
+        (-0.8, 18.6, "", False),  # as many passes, but the way out of each is at the feed
         (-1, 4, "", True),
         (-1, 4, 'roughing = "along"', False),
         (-10, 15, 'roughing = "facing"', True),

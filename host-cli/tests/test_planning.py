@@ -60,8 +60,8 @@ def test_the_tool_comes_in_both_axes_at_once_only_from_outside() -> None:
 def test_a_face_is_cut_from_outside_level_by_level() -> None:
     found = passes(POINT, cut(10), face(0, 0, 100), front=15)
     assert [stroke.role for stroke in found] == [Role.FACING, Role.FACING]
-    assert ways(found[0]) == [(7, 105, 0), (7, 0, FEED), (12, 0, 0)]
-    assert ways(found[1]) == [(12, 105, 0), (0, 105, 0), (0, 0, FEED), (5, 0, 0)]
+    assert ways(found[0]) == [(7, 105, 0), (7, 0, FEED), (12, 0, FEED)]
+    assert ways(found[1]) == [(12, 105, 0), (0, 105, 0), (0, 0, FEED), (5, 0, FEED)]
     assert [stroke.depth for stroke in found] == [8, 7]
 
 

@@ -18,18 +18,28 @@ PROGRAM = """
 #pragma stack 0x700 256
 #pragma config WDT=OFF, XINST=OFF, LVP=OFF, FOSC=HSPLL_HS
 volatile uint8_t reset_rcon, reset_stkptr, go;
-volatile uint16_t a, b, product, quotient, rest;
-volatile uint32_t c, d, long_product, long_quotient;
+extern uint16_t factor_1, factor_2, divisor;
+uint32_t product(void);
+uint16_t proportion(void);
+volatile uint16_t a, b, short_product, quotient, rest, share;
+volatile uint32_t c, d, long_product, long_quotient, whole_product;
 void low_interrupt(void) __interrupt(2) {}
 void main(void)
 {
     for (;;) {
         if (go) {
-            product = a * b;
+            short_product = a * b;
             quotient = a / b;
             rest = a % b;
             long_product = c * d;
             long_quotient = c / d;
+            factor_1 = a;
+            factor_2 = b;
+            whole_product = product();
+            factor_1 = a;
+            factor_2 = b;
+            divisor = a > b ? a : b;
+            share = proportion();
             go = 0;
         }
     }
@@ -76,7 +86,9 @@ def test_products_quotients_and_rests_are_those_of_whole_numbers(tmp_path: Path)
             chip.set_variable(name, value, size)
         chip.set_variable("go", 1)
         assert chip.run_until(lambda: chip.variable("go") == 0, timeout=0.01)
-        assert chip.variable("product", 2) == a * b & 0xFFFF, (a, b)
+        assert chip.variable("short_product", 2) == a * b & 0xFFFF, (a, b)
+        assert chip.variable("whole_product", 4) == a * b, (a, b)
+        assert chip.variable("share", 2) == a * b // max(a, b), (a, b)
         assert chip.variable("quotient", 2) == a // b, (a, b)
         assert chip.variable("rest", 2) == a % b, (a, b)
         assert chip.variable("long_product", 4) == c * d & 0xFFFFFFFF, (c, d)

@@ -151,7 +151,7 @@ def expected_strokes() -> list[Stroke]:
     # The approach goes to the place of the face's only pass: 6 steps.
     face = [
         Stroke("X", -65, 400),
-        Stroke("Z", 5, RAPID_RATE),
+        Stroke("Z", 5, 400),  # through what the back edge of the tool has left
         Stroke("X", 65, RAPID_RATE),
     ]
     # 25 steps, 2 of them left for finishing: 23 in three passes of 8, 8 and 7.

@@ -95,7 +95,7 @@ class Target:
             ask(Command.PART_SELECT, slot)
             ask(Command.PART_INFO, slot)
             ask(Command.PART_READ, slot, 0)
-            ask(Command.RUN, slot)
+            ask(Command.RUN, slot, 0)
             ask(Command.PART_DELETE, slot)
         bench.ask(99, Command.SERIAL_SET, b"TN-00042")
         ask(Command.ZERO, 0, 0)
@@ -118,7 +118,7 @@ class Target:
             ask(Command.UPLOAD_COMMIT)
             ask(Command.PART_INFO, 0)
             ask(Command.PART_READ, 0, 0)
-            ask(Command.RUN, 0)
+            ask(Command.RUN, 0, 0)
 
     def _accidents(self) -> None:
         host = self.bench.host

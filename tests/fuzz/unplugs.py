@@ -24,7 +24,9 @@ from fuzz.target import Broken
 
 #: An interrupt waits for the end of the instruction before it, and instructions differ.
 JITTER_CYCLES = 3
-SHIFT_CYCLES = 1200  # 0.1 ms
+#: 1.1 ms. The speeds of the ramps shift by up to 0.1 ms; a rest is counted in milliseconds, and
+#: one that begins close to the beat can last one longer for it.
+SHIFT_CYCLES = 13_200
 UPLOAD_S = 0.08
 OUT_MAX_S = 0.08
 RUN_TIMEOUT_S = 20.0

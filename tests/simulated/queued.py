@@ -49,7 +49,7 @@ def queue_length() -> int:
 
 @dataclass
 class Listener:
-    """Follows runs on a bench; ``chains`` are the moves between two pauses, ``seconds`` their times.
+    """Follows runs; ``chains`` are the moves between two pauses, ``seconds`` their times.
 
     ``at_pause`` is called in every pause, before the run goes on.
     """

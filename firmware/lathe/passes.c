@@ -266,6 +266,8 @@ static void cut(void)
    after it. */
 static void move(void)
 {
+    int16_t x;
+
     switch (stage) {
     case STAGE_RECORD:
         take_record();
@@ -346,7 +348,11 @@ static void move(void)
         }
         break;
     case STAGE_PARK_X:
-        rapid_x(-PARK_STEPS - zero_x());
+        x = -PARK_STEPS - zero_x();
+        if (x < part_stock_radius + part_retract) {
+            x = part_stock_radius + part_retract; /* a thick stock */
+        }
+        rapid_x(x);
         stage = STAGE_PARK_Z;
         break;
     default: /* STAGE_PARK_Z */

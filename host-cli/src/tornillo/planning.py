@@ -140,13 +140,16 @@ class Planner:
         """Park for another tool; positions are then those of the new one."""
         if self._tool is not None:
             yield self._park(Halt.TOOL, record.name.rstrip(b"\0").decode("ascii", "replace"))
+        offset_z, offset_x = (self._tool.offset_z, self._tool.offset_x) if self._tool else (0, 0)
+        self.path.stand(
+            self.path.z + offset_z - record.offset_z, self.path.x + offset_x - record.offset_x
+        )
         self._tool = record
-        self.path.stand(self.park_z - record.offset_z, self.park_x - record.offset_x)
 
     def _park(self, halt: Halt, text: str) -> Stop:
-        """X, then Z go to the parking place."""
+        """X, then Z go to the parking place; X never into a stock that is thicker."""
         offset_z, offset_x = (self._tool.offset_z, self._tool.offset_x) if self._tool else (0, 0)
-        self.path.rapid_x(self.park_x - offset_x)
+        self.path.rapid_x(max(self.park_x - offset_x, self.path.clear))
         self.path.rapid(self.park_z - offset_z, self.path.x)
         return Stop(self.operation, halt, text, self.path.take())
 

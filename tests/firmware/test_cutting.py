@@ -274,6 +274,24 @@ def test_an_operation_inside_what_is_already_cut_costs_no_pass() -> None:
 
 
 @on_a_new_chip
+def test_a_stock_as_thick_as_the_travel_allows_is_not_cut_on_the_way_to_park() -> None:
+    radius = -little_pin.ZERO_X - 5
+    thick = {"stock_diameter_mm": 2 * radius * little_pin.STEP_MM}
+    bench = Bench(**(little_pin.OPTIONS | thick))
+    bench.set(zero_x=little_pin.ZERO_X, zero_z=little_pin.ZERO_Z)
+    bench.home()
+    operations = (little_pin.face(0, 0, radius), little_pin.cylinder(0, -40, radius - 5))
+    bench.host.upload(little_pin.image("thick", operations, stock_radius=radius))
+    bench.host.run()
+    bench.wait_for(State.IDLE)
+    work = bench.lathe.workpiece
+    assert {work.radius_at(z + 0.5) for z in range(-40, 0)} == {radius - 5}
+    assert {work.radius_at(z + 0.5) for z in range(-90, -40)} == {radius}
+    assert work.crashes == []
+    assert bench.position == (0, -20)
+
+
+@on_a_new_chip
 def test_progress_grows_steadily_and_names_operation_and_pass() -> None:
     bench = little_pin.homed_lathe_with_pin()
     bench.host.run()

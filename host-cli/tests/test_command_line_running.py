@@ -61,7 +61,7 @@ def test_home_tells_why_it_failed(tornillo: Tornillo, chip: ScriptedChip) -> Non
 
 
 def test_ctrl_c_while_homing_stops_the_slides(tornillo: Tornillo, chip: ScriptedChip) -> None:
-    chip.coming = [IDLE._replace(state=State.HOMING)]
+    chip.coming = 2 * [IDLE._replace(state=State.HOMING)]
     interrupt_when(chip, 0)
     result = tornillo("home")
     assert result.exit_code == 1

@@ -14,13 +14,19 @@ SDCC_FLAGS := -mpic16 -p$(CHIP) --no-warn-non-free --nostdlib --nostdinc \
   -Ifirmware --obanksel=9 --optimize-cmp --optimize-df --denable-peeps \
   --fomit-frame-pointer
 
-FIRMWARE_C := $(wildcard firmware/*.c firmware/*/*.c)
+# What is in no hurry is compiled to byte code: half the size, ten times slower.
+BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/homing.c lathe/passes.c \
+  lathe/cuts.c lathe/part_check.c lathe/shape_check.c \
+  link/commands.c store/parts.c store/settings.c)
+BYTE_I := $(BYTE_C:firmware/%.c=$(OBJECTS)/%.i)
+FIRMWARE_C := $(filter-out $(BYTE_C),$(wildcard firmware/*.c firmware/*/*.c))
 FIRMWARE_ASM := $(wildcard firmware/*.asm firmware/*/*.asm)
 FIRMWARE_H := $(wildcard firmware/*.h firmware/*/*.h)
 COMPILED := $(FIRMWARE_C:firmware/%.c=$(OBJECTS)/%.asm)
 FIRMWARE_O := $(FIRMWARE_ASM:firmware/%.asm=$(OBJECTS)/%.o) \
-  $(OBJECTS)/compiled.o $(OBJECTS)/sfr.o
+  $(OBJECTS)/compiled.o $(OBJECTS)/byte_code.o $(OBJECTS)/sfr.o
 SHRINK := $(wildcard firmware/toolchain/shrink_*.py)
+BYTE_TOOLS := $(wildcard firmware/toolchain/*bytecode*.py)
 
 .PHONY: firmware
 firmware: $(FIRMWARE)/size.json ## build the firmware, print bytes per room
@@ -40,10 +46,25 @@ $(OBJECTS)/%.asm: firmware/%.c $(FIRMWARE_H) $(FIRMWARE)/sfr.h \
 	@$(SDCC) $(SDCC_FLAGS) -S $< -o $@
 	@python3 firmware/toolchain/repair_assembly.py $@
 
+$(OBJECTS)/%.i: firmware/%.c $(FIRMWARE_H)
+	@mkdir -p $(@D)
+	@$(SDCC) $(SDCC_FLAGS) -E -D__code= -D__data= $< -o $@
+
+$(OBJECTS)/byte_code.asm: $(BYTE_I) $(COMPILED) $(FIRMWARE_ASM) $(BYTE_TOOLS)
+	@echo "byte code $@"
+	@$(PYTHON) firmware/toolchain/compile_bytecode.py \
+	  --native $(COMPILED) $(FIRMWARE_ASM) -o $@ \
+	  --stack $(FIRMWARE)/byte_code.json $(BYTE_I)
+
+$(OBJECTS)/byte_code.o: $(OBJECTS)/byte_code.asm
+	@gpasm -p$(CHIP) -w2 -c $< -o $@
+
 # All compiled modules become one, a third smaller: see shrink_assembly.py.
-$(OBJECTS)/compiled.o: $(COMPILED) $(FIRMWARE_ASM) $(SHRINK)
+$(OBJECTS)/compiled.o: $(COMPILED) $(FIRMWARE_ASM) $(OBJECTS)/byte_code.asm \
+  $(SHRINK)
 	@echo "shrink $(@:.o=.asm)"
 	@python3 firmware/toolchain/shrink_assembly.py $(FIRMWARE_ASM:%=--asm %) \
+	  --asm $(OBJECTS)/byte_code.asm --entries $(FIRMWARE)/byte_code.json \
 	  --report -o $(@:.o=.asm) $(COMPILED) >$(FIRMWARE)/shrink.txt
 	@gpasm -p$(CHIP) -w2 -c $(@:.o=.asm) -o $@
 

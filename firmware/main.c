@@ -13,7 +13,6 @@
 #include "panel/led.h"      /* status LED */
 #include "sfr.h"            /* registers */
 #include "store/parts.h"    /* part store */
-#include "store/settings.h" /* settings */
 #include "tick.h"           /* 1 ms */
 #include "usb/cdc.h"        /* USB */
 
@@ -35,7 +34,7 @@
 /* clang-format on */
 
 /* One page, as SDCC's small stack model needs. */
-#pragma stack 0x700 256
+#pragma stack 0x700 192
 
 #define ADCON1_DIGITAL 0x0F
 #define CMCON_OFF 0x07
@@ -119,7 +118,7 @@ void main(void)
     inputs_init();
     stream_init();
     parts_init();
-    machine_init(settings_load());
+    machine_init();
     tick_init();
     usb_init();
     INTCON = INTCON_BOTH_LEVELS;

@@ -39,3 +39,8 @@ uint16_t tick_now(void)
 {
     return (uint16_t)tick_uptime_ms();
 }
+
+uint16_t tick_high(void)
+{
+    return (uint16_t)(tick_uptime_ms() >> 16);
+}

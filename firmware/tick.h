@@ -21,6 +21,9 @@ void tick_count(void);
 /* Milliseconds since reset, low 16 bits; for differences up to 65 s. */
 uint16_t tick_now(void);
 
+/* The high 16 bits. */
+uint16_t tick_high(void);
+
 /* Milliseconds since reset; wraps after 49 days. */
 uint32_t tick_uptime_ms(void);
 

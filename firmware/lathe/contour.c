@@ -137,6 +137,13 @@ uint8_t contour_next(void)
     return 1;
 }
 
+void contour_read_centre(void)
+{
+    parts_seek(contour_at - 6);
+    path_next.cx = flash_read_i24();
+    path_next.cz = flash_read_i24();
+}
+
 /* Where the piece passes level v, which lies between its ends. */
 static int16_t cross(int16_t v)
 {

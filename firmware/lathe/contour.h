@@ -61,6 +61,9 @@ void contour_open(void);
 /* Reads the next piece; 0 at the end of the chain. */
 uint8_t contour_next(void);
 
+/* Reads the centre of the arc just read into path_next. */
+void contour_read_centre(void);
+
 /* Square of a distance. */
 uint32_t contour_squared(int16_t distance);
 

@@ -223,7 +223,7 @@ uint8_t homing_source(void)
         path_next.dx = homing_axis == AXIS_X ? target - start : 0;
         path_next.dz = homing_axis == AXIS_X ? 0 : target - start;
         path_next.mark = 0;
-        path_rate = (uint32_t)rate << 8;
+        path_set_rapid(rate);
     } else {
         /* The filter must have seen the last step before the end counts. */
         path_next.kind = SEGMENT_WAIT;

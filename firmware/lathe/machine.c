@@ -62,8 +62,10 @@ void machine_apply_settings(void)
     arm();
 }
 
-void machine_init(uint8_t settings_good)
+void machine_init(void)
 {
+    uint8_t settings_good = settings_load();
+
     path_cancel();
     machine_slot = SLOT_NONE;
     machine_apply_settings();

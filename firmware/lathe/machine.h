@@ -37,7 +37,7 @@ extern uint8_t machine_homed;
 extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
 
 /* Starts in IDLE, or in ALARM when the settings were lost. */
-void machine_init(uint8_t settings_good);
+void machine_init(void);
 
 /* Serves trips, buttons, homing and run; every turn of the main loop. */
 void machine_poll(void);

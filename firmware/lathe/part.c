@@ -33,10 +33,9 @@ uint16_t part_spindle;
 uint16_t part_peck;
 
 /* The fields follow each other in the image: see link/protocol.toml. */
-void part_open(uint8_t slot, uint16_t length)
+void part_open(uint16_t length)
 {
     part_length = length;
-    parts_open(slot);
     parts_seek(PART_IMAGE_OPERATION_COUNT_AT);
     part_operations = flash_read();
     parts_seek(PART_IMAGE_STOCK_RADIUS_AT);

@@ -44,8 +44,8 @@ extern uint16_t part_finish_feed;
 extern uint16_t part_spindle;
 extern uint16_t part_peck;
 
-/* Chooses the slot and reads the header. */
-void part_open(uint8_t slot, uint16_t length);
+/* Reads the header of the image that parts_open() has chosen. */
+void part_open(uint16_t length);
 
 /* Reads the first record, or the one after the last one read; part_next()
    returns 0 at the end of the image. */

@@ -209,7 +209,8 @@ uint8_t part_check(uint8_t slot, uint16_t length)
     if (length < PART_IMAGE_HEADER_SIZE || length > PART_IMAGE_MAX) {
         return REFUSAL_LENGTH;
     }
-    part_open(slot, length);
+    parts_open(slot);
+    part_open(length);
     reason = check_header();
     return reason != 0 ? reason : check_records();
 }

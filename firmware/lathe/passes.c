@@ -9,7 +9,6 @@
 #include "link/protocol.h"  /* axes, settings */
 #include "motion/path.h"    /* segments */
 #include "motion/stream.h"  /* where the tool is */
-#include "store/flash.h"    /* centres */
 #include "store/parts.h"    /* the slot */
 #include "store/settings.h" /* part zero, rapid rates */
 
@@ -94,7 +93,7 @@ static void segment(uint16_t rate)
     path_next.dx = 0;
     path_next.dz = 0;
     path_next.mark = newest;
-    path_rate = (uint32_t)rate << 5;
+    path_set_feed(rate);
 }
 
 /* Machine coordinates of part zero for the tool in use. */
@@ -125,7 +124,7 @@ static void to_z(int16_t z)
 static void rapid(uint8_t id)
 {
     segment(0);
-    path_rate = (uint32_t)settings[id] << 8;
+    path_set_rapid(settings[id]);
     path_next.kind = SEGMENT_LINE | SEGMENT_RAPID;
 }
 
@@ -216,9 +215,7 @@ static uint8_t follow(void)
     at_x += contour_dx;
     at_z += contour_dz;
     if (contour_arc != SEGMENT_LINE) {
-        parts_seek(contour_at - 6);
-        path_next.cx = flash_read_i24();
-        path_next.cz = flash_read_i24();
+        contour_read_centre();
     }
     return 1;
 }

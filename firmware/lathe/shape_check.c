@@ -2,11 +2,10 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "lathe/shape_check.h"
-#include "arithmetic.h"     /* products */
 #include "lathe/contour.h"  /* pieces, material */
 #include "lathe/part.h"     /* records */
+#include "lathe/shape_arithmetic.h" /* slopes, arcs */
 #include "link/protocol.h"  /* offsets, refusals */
-#include "motion/arc.h"     /* arcs that the motion takes */
 #include "motion/path.h"    /* kinds of segment */
 #include "store/flash.h"    /* reading numbers */
 #include "store/parts.h"    /* where the image is */
@@ -102,9 +101,7 @@ static uint8_t check_slope(int16_t dx, uint16_t dz)
     if (most == SLOPE_ANY) {
         return 0;
     }
-    factor_1 = most;
-    factor_2 = dz;
-    return ((uint32_t)(uint16_t)dx << 8) > product() ? reason : 0;
+    return shape_steeper(dx, most, dz) ? reason : 0;
 }
 
 /* The tangent of the arc at a place given from its centre. Rises on the
@@ -118,47 +115,11 @@ static uint8_t check_tangent(int16_t x, int16_t z)
     return check_slope(z, x);
 }
 
-static uint16_t root(uint32_t square)
-{
-    root_of = square;
-    return root_find();
-}
-
-/* The motion takes the arc, and neither end lies beyond its extremum of z.
-   The first lines see to it that the motion's own check cannot overflow. */
-static uint8_t arc_valid(void)
-{
-    uint16_t radius = root(contour_square);
-    uint16_t off =
-        root(contour_squared(contour_to_x) + contour_squared(contour_to_z)) -
-        radius + 2;
-    int16_t from_x = contour_from_x;
-    int16_t to_x = contour_to_x;
-
-    if (contour_arc != SEGMENT_ARC_CW) {
-        from_x = -from_x;
-        to_x = -to_x;
-    }
-    if ((from_x | to_x) < 0) {
-        return 0;
-    }
-    if (radius > RADIUS_MAX || off > 4 || contour_to_z > contour_from_z) {
-        return 0;
-    }
-    parts_seek(contour_at - 6);
-    path_present.kind = contour_arc;
-    path_present.dx = contour_dx;
-    path_present.dz = contour_dz;
-    path_present.cx = flash_read_i24();
-    path_present.cz = flash_read_i24();
-    return arc_begin();
-}
-
 static uint8_t check_arc(void)
 {
     uint8_t reason;
 
-    if (!arc_valid()) {
+    if (!shape_arc_valid()) {
         return REFUSAL_ARC;
     }
     if (contour_split) {

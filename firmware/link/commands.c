@@ -80,10 +80,13 @@ static int16_t get_i16(uint8_t at)
 
 static void put_uptime(void)
 {
-    uint32_t uptime = tick_uptime_ms();
+    uint16_t high;
 
-    put_u16(STATUS_RESPONSE_UPTIME_MS_AT, (uint16_t)uptime);
-    put_u16(STATUS_RESPONSE_UPTIME_MS_AT + 2, (uint16_t)(uptime >> 16));
+    do {
+        high = tick_high();
+        put_u16(STATUS_RESPONSE_UPTIME_MS_AT, tick_now());
+        put_u16(STATUS_RESPONSE_UPTIME_MS_AT + 2, high);
+    } while (high != tick_high());
 }
 
 static uint8_t hello(void)

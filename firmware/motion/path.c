@@ -54,6 +54,16 @@ void path_configure(void)
     plan_configure(); /* counts in braking distances */
 }
 
+void path_set_feed(uint16_t feed)
+{
+    path_rate = (uint32_t)feed << 5; /* 256 / FEED_UNIT */
+}
+
+void path_set_rapid(uint16_t rate)
+{
+    path_rate = (uint32_t)rate << 8;
+}
+
 void path_begin(void)
 {
     path_head = 0;

@@ -61,6 +61,10 @@ extern volatile uint8_t path_made;
 extern struct segment path_next;
 extern uint32_t path_rate;
 
+/* Set path_rate from 1/FEED_UNIT step/s, and from whole ones. */
+void path_set_feed(uint16_t feed);
+void path_set_rapid(uint16_t rate);
+
 /* The segment being turned into entries. */
 extern struct segment path_present;
 

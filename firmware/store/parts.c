@@ -5,6 +5,7 @@
 #include "link/crc.h"      /* crc16_update */
 #include "link/protocol.h" /* PART_SLOTS, errors */
 #include "store/eeprom.h"  /* selected part */
+#include "store/image.h"    /* the open one */
 #include "store/flash.h"   /* read, erase, write */
 
 #define IMAGE_AT FLASH_BLOCK
@@ -25,7 +26,6 @@ uint16_t parts_upload_length;
 
 uint8_t parts_name[NAME_LENGTH];
 
-static uint16_t image_base;
 static uint16_t newest_generation;
 static uint16_t upload_crc;
 static uint16_t upload_received;
@@ -339,10 +339,5 @@ uint8_t parts_upload_accept(void)
 
 void parts_open(uint8_t slot)
 {
-    image_base = slot_base(slot) + IMAGE_AT;
-}
-
-void parts_seek(uint16_t offset)
-{
-    flash_address = image_base + offset;
+    image_begin = slot_base(slot) + IMAGE_AT;
 }

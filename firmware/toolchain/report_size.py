@@ -11,12 +11,12 @@ import sys
 from collections import Counter
 from pathlib import Path
 
-from stack_depth import worst_case
+from stack_depth import ByteCode, worst_case
 
 FLASH_BYTES, RAM_BYTES = 32_768, 2_048
 BUDGETS = {
     "flash_bytes": 0x7800,  # where the part store begins; why: docs/firmware-tour.md
-    "ram_bytes": RAM_BYTES * 85 // 100,
+    "ram_bytes": RAM_BYTES * 90 // 100,
     "hw_stack_worst_levels": 20,
 }
 STACK_ADDRESS = 0x700  # "#pragma stack" in main.c
@@ -80,6 +80,14 @@ def rooms(directory: Path) -> tuple[Counter[str], Counter[str], int]:
     return flash, ram, stack
 
 
+def byte_code(directory: Path) -> ByteCode:
+    """Return what is known of the byte code."""
+    report = json.loads((directory / "byte_code.json").read_text())
+    lines = (directory / "tornillo.map").read_text().splitlines()
+    found = [match for line in lines if (match := SYMBOL.match(line))]
+    return ByteCode(report, {m[1]: int(m[2], 16) for m in found if m[3] == "program"})
+
+
 def room(section: str, source: str) -> str:
     """Return the room of the firmware that a section belongs to."""
     variable = re.match(r"udata_(\w+)_\d+$", section)
@@ -97,7 +105,7 @@ def main() -> None:
     """Report on the build in the directory given."""
     directory = Path(sys.argv[1])
     flash, ram, stack_room = rooms(directory)
-    stack = worst_case(read_hex(directory / "tornillo.hex"))
+    stack = worst_case(read_hex(directory / "tornillo.hex"), byte_code(directory))
     sizes = {
         "flash_bytes": sum(flash.values()),
         "ram_static_bytes": sum(ram.values()),

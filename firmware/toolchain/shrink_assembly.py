@@ -3,7 +3,7 @@
 """Shrink the assembly that SDCC generates, looking at the whole program at once.
 
 usage: shrink_assembly.py [--report] [--registers N] [--levels N] \
-    [--asm FILE.asm]... -o OUT.asm FILE.asm [FILE.asm ...]
+    [--entries FILE.json] [--asm FILE.asm]... -o OUT.asm FILE.asm [FILE.asm ...]
 
 Joins the files into one. SDCC compiles each function as if anything could call
 it at any time; here all functions and their callers are known, there is no
@@ -25,6 +25,7 @@ from pathlib import Path
 from shrink_arguments import check_stack, static_arguments
 from shrink_banks import drop_bank_selections, selected_by
 from shrink_compares import compare_on, compare_words
+from shrink_entries import add_entries, read_entries, remove_entries
 from shrink_flow import Liveness
 from shrink_fold import Folder
 from shrink_inline import inline_single_calls
@@ -59,10 +60,19 @@ class Shrinker:
     """Takes a program through all steps; `steps` holds the bytes each saved."""
 
     def __init__(
-        self, program: Program, assembly: str, registers: int, levels: int, saving: set[str]
+        self,
+        program: Program,
+        assembly: str,
+        entries: dict[str, list[str]],
+        *,
+        registers: int,
+        levels: int,
+        saving: set[str],
     ) -> None:
         """Find what is called from where; RefusalError where that is not sound."""
         self.program = program
+        self.entries = entries
+        add_entries(program, entries)
         self.assembly = assembly
         self.limit = registers
         self.levels = levels
@@ -77,9 +87,10 @@ class Shrinker:
         names = set(re.findall(r"\b_\w+", code))
         called = {name for f in program.functions.values() for name in f.calls()}
         self.outside = called - set(program.functions)
+        stand_ins = {name for entry in entries for name in (entry, f"{entry}_below")}
         self.roots = (names | {MAIN, INTERRUPT} | (set(program.functions) - called)) & set(
             program.functions
-        )
+        ) | stand_ins
         self.takes_w = {
             name for name in self.outside if name in names or name.startswith(("__gptr", "__gput"))
         }
@@ -162,9 +173,11 @@ class Shrinker:
             interrupts += levels_of(self.program, outside, INTERRUPT)
         bank = selected_by(self.program, self.assembly)
         fixed = self.interrupt & set(self.program.functions)
+        fixed |= {name for entry in self.entries for name in (entry, f"{entry}_below")}
         folder = Folder(self.program, order(self.program), fixed, bank, outside)
         self.order = folder.run(MAIN, self.levels - interrupts)
         self.steps.update(folder.saved)
+        self.order = remove_entries(self.program, self.order, self.entries)
 
     def _count(self, step: str, before: int) -> None:
         self.steps[step] += before - self.size()
@@ -233,7 +246,13 @@ def heaviest(program: Program, kept: set[str]) -> str:
     return best
 
 
-def shrink(files: list[Path], assembly: list[Path], registers: int, levels: int) -> tuple[str, str]:
+def shrink(
+    files: list[Path],
+    assembly: list[Path],
+    entries: dict[str, list[str]],
+    registers: int,
+    levels: int,
+) -> tuple[str, str]:
     """Return the program as one assembly text, and the report.
 
     As long as more register bytes are needed than allowed, one function more
@@ -244,7 +263,9 @@ def shrink(files: list[Path], assembly: list[Path], registers: int, levels: int)
     while True:
         program = read_program(files)
         before = _sizes(program)
-        shrinker = Shrinker(program, outside, registers, levels, saving)
+        shrinker = Shrinker(
+            program, outside, entries, registers=registers, levels=levels, saving=saving
+        )
         try:
             shrinker.run()
             break
@@ -280,12 +301,16 @@ def main() -> None:
     parser.add_argument("files", nargs="+", type=Path)
     parser.add_argument("-o", dest="output", type=Path, required=True)
     parser.add_argument("--asm", action="append", type=Path, default=[])
+    parser.add_argument("--entries", type=Path, help="report of compile_bytecode.py")
     parser.add_argument("--registers", type=int, default=48)
     parser.add_argument("--levels", type=int, default=20)
     parser.add_argument("--report", action="store_true")
     options = parser.parse_args()
     try:
-        text, report = shrink(options.files, options.asm, options.registers, options.levels)
+        entries = read_entries(options.entries) if options.entries else {}
+        text, report = shrink(
+            options.files, options.asm, entries, options.registers, options.levels
+        )
     except RefusalError as refusal:
         sys.exit(f"shrink_assembly: {refusal}")
     options.output.write_text(text)

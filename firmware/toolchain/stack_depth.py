@@ -9,11 +9,15 @@ Follows every path of every function, library routines included, and counts
 
 The program has no recursion and no function pointers; both are refused. Computed
 jumps (SDCC's switch tables: a write to PCL) go to any of the GOTO or BRA that follow.
+Byte code is not machine code: compile_bytecode.py reports what its functions push and
+call, and what the interpreter takes itself is written down here.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 POSTDEC1, PREINC1, POSTINC1, FSR1L, PCL = 0xFE5, 0xFE4, 0xFE6, 0xFE1, 0xFF9
 HIGH_VECTOR, LOW_VECTOR, RESET_VECTOR = 0x08, 0x18, 0x00
@@ -50,12 +54,42 @@ class Step:
     falls_through: bool = True
 
 
+ENTER_BYTES = 3  # the interpreter saves where it was, and a mark
+OPERATION_LEVELS = 3  # of its own calls in an operation
+RETURN_BYTES, NATIVE_LEVELS = 2, 2  # a call of byte code, of a native function
+
+
+class ByteCode:
+    """What compile_bytecode.py reports, with the addresses of labels."""
+
+    def __init__(self, report: dict[str, Any], addresses: dict[str, int]) -> None:
+        """`addresses`: of entries and native functions, by label."""
+        self.functions = report["functions"]
+        self.addresses = addresses
+        self.entries = {addresses[f"_{name}"]: name for name in report["entries"]}
+
+    def use(self, name: str, native: Callable[[int], Use]) -> Use:
+        """Return the stack use of a byte-code function, callees included."""
+        deepest, levels = self.functions[name]["bytes"], OPERATION_LEVELS
+        for depth, called in self.functions[name]["calls"]:
+            if called in self.functions:
+                use = self.use(called, native)
+                deepest = max(deepest, depth + RETURN_BYTES + use.bytes)
+                levels = max(levels, use.levels)
+            else:
+                use = native(self.addresses[f"_{called}"])
+                deepest = max(deepest, depth + use.bytes)
+                levels = max(levels, NATIVE_LEVELS + use.levels)
+        return Use(deepest, levels)
+
+
 class Program:
     """Flash content with analysed functions."""
 
-    def __init__(self, flash: bytes) -> None:
+    def __init__(self, flash: bytes, byte_code: ByteCode | None = None) -> None:
         """Take the program memory, little endian, 0xFF where nothing was written."""
         self._flash = flash
+        self._byte_code = byte_code
         self._known: dict[int, Use] = {}
         self._open: set[int] = set()
 
@@ -149,6 +183,11 @@ class Program:
         if entry in self._open:
             raise UnboundedStackError(f"recursion through 0x{entry:04X}")
         self._open.add(entry)
+        if self._byte_code and entry in self._byte_code.entries:
+            use = self._byte_code.use(self._byte_code.entries[entry], self.use)
+            self._open.discard(entry)
+            self._known[entry] = Use(ENTER_BYTES + use.bytes, use.levels)
+            return self._known[entry]
         deepest, levels = 0, 0
         seen: dict[int, int] = {}
         waiting = [(entry, 0)]
@@ -174,8 +213,8 @@ class Program:
         return self._known[entry]
 
 
-def worst_case(flash: bytes) -> Use:
+def worst_case(flash: bytes, byte_code: ByteCode | None = None) -> Use:
     """Return the stack use of main with both interrupts on top of its deepest point."""
-    program = Program(flash)
+    program = Program(flash, byte_code)
     main, low, high = (program.use(v) for v in (RESET_VECTOR, LOW_VECTOR, HIGH_VECTOR))
     return Use(main.bytes + low.bytes + high.bytes, main.levels + low.levels + high.levels + 2)

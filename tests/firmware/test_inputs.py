@@ -123,7 +123,7 @@ def test_status_shows_every_button_and_switch_alone() -> None:
 @on_a_new_chip
 def test_an_input_is_seen_three_to_four_milliseconds_after_it_changed() -> None:
     bench = Bench()
-    bench.run(0.01)
+    bench.run(0.05)
     for wait in range(20):
         bench.chip.drive(PINS["hold"], Drive.LOW)
         begun = bench.chip.seconds

@@ -39,7 +39,7 @@ extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
 /* Starts in IDLE, or in ALARM when the settings were lost. */
 void machine_init(void);
 
-/* Serves trips, buttons, homing and run; every turn of the main loop. */
+/* Serves trips, buttons, homing and run; every millisecond. */
 void machine_poll(void);
 
 uint8_t machine_home(void);

@@ -111,7 +111,6 @@
 #define ALARM_SETTINGS_LOST                 7
 #define ALARM_STOPPED_HOMING                8
 #define ALARM_DEAD_STEPS_SPREAD             9
-#define ALARM_INTERNAL                      10
 #define ALARM_PATH                          11
 #define ALARM_SWITCH_WIRING                 14
 #define ALARM_PROBE_UNEXPECTED              15

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Verbs that change what the chip remembers about the machine: settings, zero."""
 
-import difflib
 import math
+from pathlib import Path
 
 import click
 
 from tornillo.commands.connection import connected, json_option, print_json, print_table
 from tornillo.errors import TornilloError
-from tornillo.protocol import SETTINGS, Axis, Setting
+from tornillo.lathe import Lathe
+from tornillo.machine_file import file_text, load_file
+from tornillo.protocol import Axis
+from tornillo.setting_names import explained, named, span
+from tornillo.settings import Change, outdated_parts, store, store_all
 from tornillo.units import NM_PER_UNIT, Scale
 
 units_option = click.option(
@@ -24,12 +28,14 @@ units_option = click.option(
 @json_option
 @click.pass_context
 def settings(context: click.Context, as_json: bool) -> None:
-    """List the settings of the lathe, or get or set one.
+    """List the settings of the lathe, get or set one, save or load all.
 
     \b
     Examples: tornillo settings
               tornillo settings get zero_z
               tornillo settings set rapid_rate_x 900
+              tornillo settings save my-lathe.toml
+              tornillo settings load my-lathe.toml
     """
     if context.invoked_subcommand is not None:
         return
@@ -55,38 +61,82 @@ def settings(context: click.Context, as_json: bool) -> None:
 @settings.command("get")
 @click.argument("name")
 def get_setting(name: str) -> None:
-    """Print the value of NAME alone."""
-    entry = _named(name)
+    """Print the value of NAME alone; meaning, range and unit go to stderr."""
+    entry = named(name)
     with connected() as lathe:
-        click.echo(lathe.setting(entry.id).value)
+        told = lathe.setting(entry.id)
+    click.echo(told.value)
+    click.echo(explained(entry, told), err=True)
 
 
 @settings.command("set", context_settings={"ignore_unknown_options": True})
 @click.argument("name")
-@click.argument("value", type=int)
-def set_setting(name: str, value: int) -> None:
-    """Change NAME to VALUE and store it in the lathe."""
-    entry = _named(name)
+@click.argument("value")
+def set_setting(name: str, value: str) -> None:
+    """Change NAME to VALUE, a whole number, and store it in the lathe."""
+    entry = named(name)
+    try:
+        number = int(value)
+    except ValueError as error:
+        raise click.BadParameter(
+            f"{value} is no whole number; {entry.id.name.lower()} goes from {span(entry)}",
+            param_hint="VALUE",
+        ) from error
     with connected() as lathe:
-        now = lathe.setting(entry.id)
-        if not now.minimum <= value <= now.maximum:
-            raise TornilloError(
-                f"{name} cannot be {value}: it goes from {now.minimum} to {now.maximum} "
-                f"{entry.unit}".rstrip(),
-                f"choose a value in this range; now it is {now.value}",
-            )
-        lathe.set_setting(entry.id, value)
-    click.echo(f"{name} was {now.value}, is {value} {entry.unit}".rstrip())
+        change = store(lathe, entry, number)
+        click.echo(change)
+        _warn_of_parts(lathe, [change])
 
 
-def _named(name: str) -> Setting:
-    """The setting called `name`; raises TornilloError with the nearest name."""
-    known = {entry.id.name.lower(): entry for entry in SETTINGS}
-    if name.lower() not in known:
-        close = difflib.get_close_matches(name.lower(), known, n=1)
-        remedy = f'did you mean "{close[0]}"?' if close else "see `tornillo settings`"
-        raise TornilloError(f'there is no setting "{name}"', remedy)
-    return known[name.lower()]
+@settings.command("save")
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--force", is_flag=True, help="Write over FILE when it is there.")
+def save_settings(file: Path, force: bool) -> None:
+    """Write all settings of the lathe to the machine file FILE.
+
+    It is TOML with units and ranges. Every verb with --machine takes it, too.
+
+    \b
+    Example: tornillo settings save my-lathe.toml
+    """
+    if file.exists() and not force:
+        raise TornilloError(f"{file} is there already", "name another file, or add --force")
+    with connected() as lathe:
+        values = {entry.id: data.value for entry, data in lathe.settings()}
+        source = f"read from lathe {lathe.serial_number}, firmware {lathe.firmware}"
+    try:
+        file.write_text(file_text(values, file.stem, source), encoding="utf-8")
+    except OSError as error:
+        raise TornilloError(f"cannot write {file}: {error}", "choose another place") from error
+    click.echo(f"{len(values)} settings saved in {file}")
+
+
+@settings.command("load")
+@click.argument("file")
+def load_settings(file: str) -> None:
+    """Store the settings of the machine file FILE in the lathe.
+
+    The whole file is checked first. Settings that it does not name stay, and only those that differ
+    are written. FILE is a path ending in .toml or a machine that comes with tornillo.
+
+    \b
+    Example: tornillo settings load my-lathe.toml
+    """
+    values = load_file(file)
+    with connected() as lathe:
+        changes = store_all(lathe, values, click.echo)
+        click.echo(f"{len(values)} settings of {file}: {len(changes)} changed and stored")
+        _warn_of_parts(lathe, changes)
+
+
+def _warn_of_parts(lathe: Lathe, changes: list[Change]) -> None:
+    """Name the parts that a changed step size makes useless."""
+    names = outdated_parts(lathe, changes)
+    if names:
+        click.echo(
+            f"made for another step size, refused until uploaded again: {', '.join(names)}",
+            err=True,
+        )
 
 
 @click.group()

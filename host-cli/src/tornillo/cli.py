@@ -10,6 +10,7 @@ import click
 
 from tornillo import __version__
 from tornillo.commands import (
+    calibrate,
     drawing,
     import_dxf,
     moving,
@@ -53,6 +54,16 @@ def main(context: click.Context, port: str | None) -> None:
     context.obj = port
 
 
-for module in (parts, planning, drawing, import_dxf, running, moving, settings, system):
+for module in (
+    parts,
+    planning,
+    drawing,
+    import_dxf,
+    running,
+    moving,
+    settings,
+    calibrate,
+    system,
+):
     for verb in module.VERBS:
         main.add_command(verb)

@@ -20,6 +20,11 @@
 ; interval = period + (stretch * period) / 256, in cycles, 24 bits; of a wait
 ; the number of milliseconds that its entry tells.
 ;
+; The period changes with certain entries only, each named by the place in the
+; ring behind it, _ramp_at: so which step gets which speed does not depend on
+; when the ramp finds time to work out the next one. It is woken there, by the
+; flag of Timer 3, which stands still.
+;
 ; Intervals over 65,535 cycles are cut: while 0x10000 or more remain, half a
 ; turn of Timer 1 (0x8000) is waited for first, so that the last piece is
 ; never shorter than half a turn. The compare register is written high byte
@@ -32,7 +37,7 @@
         global  _stream_head, _stream_tail, _stream_flags
         global  _stream_count, _stream_signal, _stream_period
         global  _stream_step_dir, _stream_pulse, _stream_invert_x
-        global  _stream_invert_z
+        global  _stream_invert_z, _ramp_at, _ramp_count, _ramp_stretch
         global  _position_x, _position_z, _slack_x, _slack_z
         global  _phase_x, _phase_z, _phase_step, _coils_x, _coils_z
         global  _pattern_x, _pattern_z, _stream_next, _step_ring
@@ -57,7 +62,6 @@ ORDER_SIGNAL    equ     3
 ACTIVE          equ     0               ; an interrupt is due
 WAITING         equ     1               ; half turns of the timer remain
 DRY             equ     2               ; ring was empty in mid-move
-NEW_PERIOD      equ     3               ; _stream_period is to be taken over
 
 access_data     udata_acs
 _stream_head    res 1                   ; written by the main loop only
@@ -66,7 +70,10 @@ _stream_flags   res 1
 _stream_next    res 1                   ; flags of the step to come
 _stream_count   res 2                   ; entries that advanced the path
 _stream_signal  res 1                   ; number of the last signal passed
-_stream_period  res 3                   ; the next period, with NEW_PERIOD
+_stream_period  res 3                   ; the next period; the division needs
+_ramp_stretch   res 1                   ; a fourth byte: stretch of the entry
+_ramp_count     res 1                   ; that took it, low byte of the count
+_ramp_at        res 1                   ; tail behind the one that takes the next
 _stream_step_dir res 1                  ; bit 0: pulses instead of coils
 _stream_pulse   res 1                   ; longer pulse, in 1/4 us
 _stream_invert_x res 1                  ; 2 = direction output inverted
@@ -133,16 +140,13 @@ done:
 
 ; Turns one motor's phase by a step and looks its pattern up (FSR0H = 0).
 advance macro   step, negative, phase, table, pattern
-        local   minus, look_up, done
+        local   done
         btfss   _stream_next, step, A
         bra     done
         movf    _phase_step, W, A
         btfsc   _stream_next, negative, A
-        bra     minus
+        sublw   0
         addwf   phase, W, A
-        bra     look_up
-minus:  subwf   phase, W, A
-look_up:
         andlw   7
         movwf   phase, A
         addlw   LOW(table)
@@ -199,18 +203,21 @@ patterns:
 patterns_known:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
-        btfss   _stream_flags, NEW_PERIOD, A
+        movf    _stream_tail, W, A
+        cpfseq  _ramp_at, A
         bra     interval
         movff   _stream_period, period
         movff   _stream_period + 1, period + 1
         movff   _stream_period + 2, period + 2
-        bcf     _stream_flags, NEW_PERIOD, A
+        movff   _stream_count, _ramp_count
+        movff   stretch, _ramp_stretch
+        bsf     PIR2, TMR3IF, A
 interval:
+        movf    stretch, W, A
+        bnz     stretched
         movff   period, remain
         movff   period + 1, remain + 1
         movff   period + 2, remain + 2
-        movf    stretch, W, A
-        bnz     stretched
         bra     schedule
 stretched:
         ; PROD belongs to the program interrupted here
@@ -218,11 +225,14 @@ stretched:
         movff   PRODH, save_fsr0 + 1
         mulwf   period + 1, A
         movf    PRODL, W, A
-        addwf   remain, F, A
+        addwf   period, W, A
+        movwf   remain, A
         movf    PRODH, W, A
-        addwfc  remain + 1, F, A
+        addwfc  period + 1, W, A
+        movwf   remain + 1, A
         movlw   0
-        addwfc  remain + 2, F, A
+        addwfc  period + 2, W, A
+        movwf   remain + 2, A
         movf    stretch, W, A
         mulwf   period + 2, A
         movf    PRODL, W, A
@@ -290,10 +300,16 @@ pulse_wait:
         bra     patterns_known
 
 ; Interval before an order: none for most (as short as can be), for a wait
-; its milliseconds: stretch * 12,000.
+; its milliseconds: stretch * 12,000. It has no speed; one that was meant for
+; it waits for the entry behind.
 order_interval:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
+        movf    _stream_tail, W, A
+        xorwf   _ramp_at, W, A
+        movlw   2
+        btfsc   STATUS, Z, A
+        addwf   _ramp_at, F, A
         clrf    remain + 2, A
         clrf    remain + 1, A
         movlw   NO_INTERVAL

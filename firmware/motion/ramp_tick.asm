@@ -43,6 +43,7 @@ CHANGED         equ     3               ; the speed, in this run
 
 ; _stream_flags
 ACTIVE          equ     0
+STOOD           equ     3
 
 ramp_data       udata
 _ramp_speed     res 4                   ; 1/256 step/s, 24 bits used
@@ -243,6 +244,8 @@ entries_to_go:
         movf    PRODH, W, A
         addwfc  _ramp_way + 1, F, B
         bcf     _ramp_flags, CHANGED, B
+        btfsc   _stream_flags, STOOD, A
+        bra     no_time                 ; a ramp begins with the second step
 time:
         movf    _ramp_speed + 1, W, B
         subwf   _ramp_way, W, B
@@ -255,8 +258,10 @@ time:
         subwfb  _ramp_way + 1, F, B
         rcall   least_speed
         iorlw   0
-        bnz     time
-        clrf    _ramp_way, B            ; the speed stays as it is
+        bnz     time                    ; 0: the speed stays as it is
+no_time:
+        bcf     _stream_flags, STOOD, A
+        clrf    _ramp_way, B
         clrf    _ramp_way + 1, B
 time_over:
         btfss   _ramp_flags, CHANGED, B

@@ -62,6 +62,7 @@ ORDER_SIGNAL    equ     3
 ACTIVE          equ     0               ; an interrupt is due
 WAITING         equ     1               ; half turns of the timer remain
 DRY             equ     2               ; ring was empty in mid-move
+STOOD           equ     3               ; before the entry to come
 
 access_data     udata_acs
 _stream_head    res 1                   ; written by the main loop only
@@ -320,6 +321,7 @@ order_interval:
         bz      wait_interval
         bra     schedule
 wait_interval:
+        bsf     _stream_flags, STOOD, A
         movff   PRODL, save_fsr0
         movff   PRODH, save_fsr0 + 1
         movf    stretch, W, A

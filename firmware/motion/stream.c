@@ -138,7 +138,7 @@ void stream_thaw(void)
 void stream_start(void)
 {
     stream_low = STREAM_ENTRIES;
-    stream_flags = 0;
+    stream_flags = STREAM_STOOD;
     stream_thaw();
 }
 

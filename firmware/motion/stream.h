@@ -39,6 +39,7 @@
 #define STREAM_ACTIVE 0x01
 #define STREAM_WAITING 0x02
 #define STREAM_DRY 0x04
+#define STREAM_STOOD 0x08 /* before the entry to come; for the ramp */
 
 #define STREAM_ENTRIES 127u /* one of 128 stays free */
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import pairwise
 
@@ -20,8 +21,8 @@ CYCLES_PER_MS = CYCLES_PER_SECOND // 1000
 WORST_CYCLES = 150
 PULL_IN = 5000
 ACCELERATION, START_RATE = 8000, 400
-#: The speed changes once in a millisecond; this is one such change.
-SPEED_STEP = ACCELERATION / 1000
+#: The speed changes in steps of what it gains in 1/1024 s.
+SPEED_STEP = ACCELERATION / 1024
 #: Cycles an order without a time of its own takes, 20 us.
 ORDER_CYCLES = 240
 END, WAIT, OUTPUT, SIGNAL = 0x80, 0x81, 0x82, 0x83
@@ -91,31 +92,30 @@ def test_steps_come_at_their_exact_time_whatever_usb_does(
 
 @pytest.mark.parametrize("rate", [999, 4000])
 @on_a_new_chip
-def test_the_ramp_is_that_of_the_acceleration_in_steps_of_a_millisecond(rate: int) -> None:
+def test_the_ramp_is_that_of_the_acceleration_over_the_way(rate: int) -> None:
     bench = seeking_lathe(rate)
     planned = Planned(bench)
     bench.host.home()
     bench.run(0.1 + ramp_seconds(rate))
-    steps = planned.steps()
-    begin = steps[0].cycle
-    speeds = []
-    for step in steps:
-        # The ideal speed at the step's begin: a straight line of the time. The chip's is that
-        # of the last whole millisecond, in periods of whole cycles; the ramp starts with a tick
-        # up to a millisecond behind the first step.
-        ideal = START_RATE + ACCELERATION * (step.cycle - begin) / CYCLES_PER_SECOND
-        speed = CYCLES_PER_SECOND / step.interval
+    intervals = [step.interval for step in planned.steps()]
+    speeds = [CYCLES_PER_SECOND / interval for interval in intervals]
+    for way, speed in enumerate(speeds):
+        # The ideal speed when the step begins. That of the chip changes every speed / 1024 + 1
+        # steps, by what an ideal ramp gains on these, and in whole ticks; periods are whole cycles.
+        behind = 2 * (int(speed) // 1024 + 1)
+        ideal, least = (
+            math.sqrt(START_RATE**2 + 2 * ACCELERATION * max(0, steps))
+            for steps in (way, way - behind)
+        )
         rounding = speed * speed / CYCLES_PER_SECOND
         assert speed <= min(rate, ideal + SPEED_STEP) + rounding
-        assert speed >= min(rate, ideal - 2 * SPEED_STEP) - rounding
-        speeds.append(speed)
+        assert speed >= min(rate, least - SPEED_STEP) - rounding
     assert max(speeds) == pytest.approx(rate, rel=1e-3)
     assert speeds == sorted(speeds)
-    # Every change is of whole millisecond steps, to a cycle: nothing else goes into the speed.
-    for step in steps:
-        ticks = round((CYCLES_PER_SECOND / step.interval - START_RATE) / SPEED_STEP)
-        speed = min(rate, START_RATE + ticks * SPEED_STEP)
-        assert step.interval == int(CYCLES_PER_SECOND / speed)
+    # Every change is of whole ticks, to a cycle: nothing else goes into the speed.
+    for interval, found in zip(intervals, speeds, strict=True):
+        speed = min(rate, START_RATE + round((found - START_RATE) / SPEED_STEP) * SPEED_STEP)
+        assert interval == int(CYCLES_PER_SECOND * 256 / int(speed * 256))
 
 
 def entries_left(bench: Bench) -> list[int]:

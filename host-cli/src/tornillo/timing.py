@@ -29,9 +29,10 @@ def move_times(chain: Sequence[Move], planner: LegPlanner) -> list[float]:
     legs = list(planner.chain(chain))
     speed = min(float(drives.start), legs[0].rate) if legs else 0.0
     times: list[float] = []
-    for leg, allowed in zip(legs, exits(legs, drives), strict=True):
+    for number, (leg, allowed) in enumerate(zip(legs, exits(legs, drives), strict=True)):
         stretch = leg.length / leg.entries
-        task = Task(drives, round(leg.entries), stretch, leg.dead, leg.rate, allowed)
+        stands = number == 0 or leg.rest
+        task = Task(drives, round(leg.entries), stretch, leg.dead, leg.rate, allowed, stands)
         seconds, speed = task_time(task, speed)
         seconds += leg.flat / leg.rate
         times.append(seconds + (REST_S if leg.rest else 0.0))
@@ -44,7 +45,8 @@ class Task(NamedTuple):
     """`entries` steps of the faster axis at `rate`, after `dead` ones that lead nowhere.
 
     `stretch` is the way along the path of one entry; `allowed` is the braking distance that may
-    be left behind, half steps.
+    be left behind, half steps; `stands` tells that the tool stands before, so that the speed
+    changes with the second step.
     """
 
     drives: Drives
@@ -53,6 +55,7 @@ class Task(NamedTuple):
     dead: int
     rate: float
     allowed: int
+    stands: bool
 
 
 @lru_cache(maxsize=4096)
@@ -72,6 +75,8 @@ def task_time(task: Task, speed: float) -> tuple[float, float]:
         entries = min(left, int(speed) // TICKS + 1)
         now += entries * stretch / speed
         way += entries * stretch * TICKS
+        if task.stands and not left < task.entries + task.dead:
+            way = 0.0
         following = speed
         while way >= int(following):
             way -= int(following)

@@ -116,9 +116,10 @@ count_down      macro   counter
         addwfc  counter + 1, F, A
         endm
 
-; Counts the step just made on one axis, in the tool's or the slack's counter.
-account macro   step, negative, slack, position, slack_counter
-        local   is_slack, down, slack_down, done
+; Counts the step just made on one axis, in the tool's or the slack's counter;
+; the tool's takes 10 cycles either way, the slack's 12, behind the interrupt.
+account macro   step, negative, slack, position, is_slack, done
+        local   down
         btfss   _stream_next, step, A
         bra     done
         btfsc   _stream_next, slack, A
@@ -128,15 +129,18 @@ account macro   step, negative, slack, position, slack_counter
         count_up position
         bra     done
 down:   count_down position
-        bra     done
-is_slack:
-        btfsc   _stream_next, negative, A
-        bra     slack_down
-        count_up slack_counter
-        bra     done
-slack_down:
-        count_down slack_counter
 done:
+        endm
+
+account_slack macro negative, counter, is_slack, done
+        local   up
+is_slack:
+        btfss   _stream_next, negative, A
+        bra     up
+        count_down counter
+        bra     done
+up:     count_up counter
+        bra     done
         endm
 
 ; Turns one motor's phase by a step and looks its pattern up (FSR0H = 0).
@@ -160,13 +164,13 @@ code_step       code
 step_interrupt:
         bcf     PIR2, CCP2IF, A
         btfsc   _stream_flags, WAITING, A
-        bra     schedule
+        bra     waited
         movff   _pattern_z, LATB
         movff   _pattern_x, LATD
         btfsc   _stream_next, ORDER, A
         bra     order
-        account STEP_X, X_NEGATIVE, SLACK_X, _position_x, _slack_x
-        account STEP_Z, Z_NEGATIVE, SLACK_Z, _position_z, _slack_z
+        account STEP_X, X_NEGATIVE, SLACK_X, _position_x, is_slack_x, done_x
+        account STEP_Z, Z_NEGATIVE, SLACK_Z, _position_z, is_slack_z, done_z
 
         btfss   _stream_next, ADVANCES, A
         bra     next
@@ -190,12 +194,20 @@ take:
         movlw   HIGH(_step_ring)
         movwf   FSR0H, A
         movff   POSTINC0, _stream_next
-        movff   INDF0, stretch
-        movlw   2
-        addwf   _stream_tail, F, A
+        movff   POSTINC0, stretch
+        movf    FSR0L, W, A
+        movwf   _stream_tail, A
         clrf    FSR0H, A
         btfsc   _stream_next, ORDER, A
         bra     order_interval
+        cpfseq  _ramp_at, A
+        bra     patterns
+        movff   _stream_period, period
+        movff   _stream_period + 1, period + 1
+        movff   _stream_period + 2, period + 2
+        movff   _stream_count, _ramp_count
+        movff   stretch, _ramp_stretch
+        bsf     PIR2, TMR3IF, A
 patterns:
         btfsc   _stream_step_dir, 0, A
         bra     pulses
@@ -204,23 +216,8 @@ patterns:
 patterns_known:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
-        movf    _stream_tail, W, A
-        cpfseq  _ramp_at, A
-        bra     interval
-        movff   _stream_period, period
-        movff   _stream_period + 1, period + 1
-        movff   _stream_period + 2, period + 2
-        movff   _stream_count, _ramp_count
-        movff   stretch, _ramp_stretch
-        bsf     PIR2, TMR3IF, A
-interval:
         movf    stretch, W, A
-        bnz     stretched
-        movff   period, remain
-        movff   period + 1, remain + 1
-        movff   period + 2, remain + 2
-        bra     schedule
-stretched:
+        bz      straight
         ; PROD belongs to the program interrupted here
         movff   PRODL, save_fsr0
         movff   PRODH, save_fsr0 + 1
@@ -253,7 +250,6 @@ stretched:
 schedule:
         movf    remain + 2, W, A
         bnz     half_turn
-        bcf     _stream_flags, WAITING, A
         movf    remain, W, A
         addwf   CCPR2L, W, A
         movwf   remain, A
@@ -263,6 +259,18 @@ schedule:
         movff   remain, CCPR2L
         retfie  FAST
 
+straight:
+        movff   period, remain
+        movff   period + 1, remain + 1
+        movff   period + 2, remain + 2
+        bra     schedule
+
+        account_slack X_NEGATIVE, _slack_x, is_slack_x, done_x
+        account_slack Z_NEGATIVE, _slack_z, is_slack_z, done_z
+
+waited:
+        bcf     _stream_flags, WAITING, A
+        bra     schedule
 half_turn:
         bsf     _stream_flags, WAITING, A
         btg     CCPR2H, 7, A
@@ -306,8 +314,7 @@ pulse_wait:
 order_interval:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
-        movf    _stream_tail, W, A
-        xorwf   _ramp_at, W, A
+        xorwf   _ramp_at, W, A          ; W is the tail
         movlw   2
         btfsc   STATUS, Z, A
         addwf   _ramp_at, F, A

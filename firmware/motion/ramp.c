@@ -17,13 +17,17 @@ extern volatile uint8_t ramp_flags;
 extern volatile uint16_t ramp_brake_speed;
 extern volatile uint16_t ramp_brake_factor;
 extern volatile uint16_t ramp_brake_distance;
+extern volatile uint16_t ramp_way;
 void ramp_brake(void);
 void ramp_set_period(void);
 void ramp_arm(void);
-extern volatile uint16_t ramp_way;
-extern volatile uint8_t ramp_at; /* step_interrupt.asm */
-#define NO_ENTRY 1 /* they begin at even places */
+
+/* step_interrupt.asm */
+extern volatile uint8_t ramp_at;
 extern volatile uint8_t stream_next;
+
+/* For ramp_at: entries begin at even places. */
+#define NO_ENTRY 1
 
 /* Longest way to brake that can be planned, 1/2 step. */
 #define DISTANCE_FAR 60000u
@@ -62,8 +66,9 @@ void ramp_configure(uint16_t acceleration, uint16_t start, uint16_t top)
     ramp_stop = ramp_distance(start);
 }
 
-/* The next entry takes what is wanted now, without waiting for its turn; not
-   when that is an order, which has no speed. */
+/* The next entry takes what is wanted now, without waiting for its turn; an
+   order, during which the tool stands, is waited for. Low interrupt off, on
+   behind it. */
 static void at_once(void)
 {
     ramp_at = NO_ENTRY;

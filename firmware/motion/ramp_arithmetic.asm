@@ -19,12 +19,12 @@ ramp_arithmetic_code code
 ; _ramp_stretch, which has been used by then. A speed of 0 gives the longest.
 _ramp_set_period:
         banksel wanted
-        clrf    _stream_period, A       ; 3,072,000,000 = B71B0000h
-        clrf    _stream_period + 1, A
+        clrf    _stream_period, B       ; 3,072,000,000 = B71B0000h
+        clrf    _stream_period + 1, B
         movlw   0x1B
-        movwf   _stream_period + 2, A
+        movwf   _stream_period + 2, B
         movlw   0xB7
-        movwf   _stream_period + 3, A
+        movwf   _stream_period + 3, B
         clrf    remainder, B
         clrf    remainder + 1, B
         clrf    remainder + 2, B
@@ -33,10 +33,10 @@ _ramp_set_period:
         movwf   bits, B
 divide_bit:
         bcf     STATUS, C, A
-        rlcf    _stream_period, F, A
-        rlcf    _stream_period + 1, F, A
-        rlcf    _stream_period + 2, F, A
-        rlcf    _stream_period + 3, F, A
+        rlcf    _stream_period, F, B
+        rlcf    _stream_period + 1, F, B
+        rlcf    _stream_period + 2, F, B
+        rlcf    _stream_period + 3, F, B
         rlcf    remainder, F, B
         rlcf    remainder + 1, F, B
         rlcf    remainder + 2, F, B
@@ -50,7 +50,7 @@ divide_bit:
         movlw   0
         subwfb  remainder + 3, F, B
         bnc     divide_restore
-        bsf     _stream_period, 0, A
+        bsf     _stream_period, 0, B
         bra     divide_next
 divide_restore:
         movf    _ramp_speed, W, B

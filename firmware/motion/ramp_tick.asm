@@ -17,14 +17,14 @@
         global  _ramp_tick, _ramp_arm
         global  wanted, remainder, bits, square, product
         global  _ramp_speed, _ramp_start, _ramp_top, _ramp_step, _ramp_scale
-        global  _ramp_way
+        global  _ramp_way, _stream_period, _ramp_count, _ramp_stretch
         global  _ramp_flags, _ramp_segment, _ramp_stop
         global  _ramp_brake_speed, _ramp_brake_factor, _ramp_brake_distance
 
         extern  _ramp_set_period, ramp_multiply, _ramp_brake
         extern  _segments, _segment_speed, _path_made, _path_head, _path_mark
         extern  _stream_flags, _stream_count, _stream_tail
-        extern  _ramp_at, _ramp_count, _ramp_stretch
+        extern  _ramp_at
 
 ; struct segment of path.h
 SEGMENTS        equ     16
@@ -46,6 +46,9 @@ ACTIVE          equ     0
 STOOD           equ     3
 
 ramp_data       udata
+_stream_period  res 3                   ; the next period; the division needs
+_ramp_stretch   res 1                   ; a fourth byte: stretch of the entry
+_ramp_count     res 1                   ; that took it, low byte of the count
 _ramp_speed     res 4                   ; 1/256 step/s, 24 bits used
 _ramp_start     res 4                   ; start/stop speed
 _ramp_top       res 4                   ; no override goes beyond
@@ -122,7 +125,7 @@ read_count:
         movf    made, W, B
         xorwf   _stream_count, W, A
         bnz     read_count
-        movf    _ramp_count, W, A
+        movf    _ramp_count, W, B
         subwf   made, W, B
         btfss   STATUS, C, A
         decf    made + 1, F, B
@@ -238,7 +241,7 @@ entries_to_go:
         addlw   4
         movwf   entries, B
         addwf   _ramp_way + 1, F, B
-        mulwf   _ramp_stretch, A
+        mulwf   _ramp_stretch, B
         movf    PRODL, W, A
         addwf   _ramp_way, F, B
         movf    PRODH, W, A

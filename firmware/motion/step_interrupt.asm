@@ -35,12 +35,13 @@
         radix   dec
 
         global  _stream_head, _stream_tail, _stream_flags
-        global  _stream_count, _stream_signal, _stream_period
+        global  _stream_count, _stream_signal
         global  _stream_step_dir, _stream_pulse, _stream_invert_x
-        global  _stream_invert_z, _ramp_at, _ramp_count, _ramp_stretch
+        global  _stream_invert_z, _ramp_at
         global  _position_x, _position_z, _slack_x, _slack_z
         global  _phase_x, _phase_z, _phase_step, _coils_x, _coils_z
         global  _pattern_x, _pattern_z, _stream_next, _step_ring
+        extern  _stream_period, _ramp_count, _ramp_stretch ; ramp_tick.asm
 
 STEP_X          equ     0
 X_NEGATIVE      equ     1
@@ -71,10 +72,8 @@ _stream_flags   res 1
 _stream_next    res 1                   ; flags of the step to come
 _stream_count   res 2                   ; entries that advanced the path
 _stream_signal  res 1                   ; number of the last signal passed
-_stream_period  res 3                   ; the next period; the division needs
-_ramp_stretch   res 1                   ; a fourth byte: stretch of the entry
-_ramp_count     res 1                   ; that took it, low byte of the count
-_ramp_at        res 1                   ; tail behind the one that takes the next
+_ramp_at        res 1                   ; tail behind the entry that takes the
+                                        ; next period
 _stream_step_dir res 1                  ; bit 0: pulses instead of coils
 _stream_pulse   res 1                   ; longer pulse, in 1/4 us
 _stream_invert_x res 1                  ; 2 = direction output inverted

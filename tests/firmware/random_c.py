@@ -11,10 +11,19 @@ U8, I16, U16 = "uint8_t", "int16_t", "uint16_t"
 VARIABLES = [(f"a{n}", U8) for n in range(3)]
 VARIABLES += [(f"b{n}", I16) for n in range(3)] + [(f"c{n}", U16) for n in range(3)]
 ARRAYS = {"bytes": U8, "words": I16}
-TABLES = {"small": (U8, (3, 1, 4, 159, 26, 5, 35, 255)), "large": (U16, (0, 1, 32768, 65535, 9, 8, 7, 6))}
+TABLES = {
+    "small": (U8, (3, 1, 4, 159, 26, 5, 35, 255)),
+    "large": (U16, (0, 1, 32768, 65535, 9, 8, 7, 6)),
+}
 LENGTH = 8  # of arrays and tables
 
-State = dict[str, int | list[int]]
+
+@dataclass
+class State:
+    """The variables, and the arrays, by name."""
+
+    numbers: dict[str, int]
+    arrays: dict[str, list[int]]
 
 
 def fit(value: int, kind: str) -> int:
@@ -52,12 +61,14 @@ class Generator:
         chance = self.random.random()
         if chance < 0.55:
             name, kind = self.random.choice(VARIABLES)
-            return Expression(name, kind, lambda state: state[name])  # type: ignore[return-value]
+            return Expression(name, kind, lambda state: state.numbers[name])
         if chance < 0.7:
             name = self.random.choice(sorted(ARRAYS))
             index = self.random.randrange(LENGTH)
-            return Expression(f"{name}[{index}]", ARRAYS[name], lambda s: s[name][index])
-        number = self.random.choice([0, 1, 2, 7, 100, 255, 256, 1000, 32767, self.random.randrange(32768)])
+            return Expression(f"{name}[{index}]", ARRAYS[name], lambda s: s.arrays[name][index])
+        number = self.random.choice(
+            [0, 1, 2, 7, 100, 255, 256, 1000, 32767, self.random.randrange(32768)]
+        )
         return Expression(str(number), I16, lambda _: number, constant=True)
 
     def expression(self, depth: int) -> Expression:
@@ -124,7 +135,9 @@ class Generator:
         inner, count = self.varying(depth), self.random.randrange(1, 15)
         kind = promoted(inner)
         if self.random.random() < 0.5:
-            return Expression(f"({inner.text} << {count})", kind, lambda s: fit(inner.value(s) << count, kind))
+            return Expression(
+                f"({inner.text} << {count})", kind, lambda s: fit(inner.value(s) << count, kind)
+            )
         return Expression(f"({inner.text} >> {count})", kind, lambda s: inner.value(s) >> count)
 
     def one_sided(self, depth: int) -> Expression:
@@ -136,7 +149,9 @@ class Generator:
         if op in "-~":
             kind = promoted(inner)
             work = int.__neg__ if op == "-" else int.__invert__
-            return Expression(f"({op}{inner.text})", kind, lambda s: fit(work(inner.value(s)), kind))
+            return Expression(
+                f"({op}{inner.text})", kind, lambda s: fit(work(inner.value(s)), kind)
+            )
         return Expression(f"(({op}){inner.text})", op, lambda s: fit(inner.value(s), op))
 
     def other(self, depth: int) -> Expression:
@@ -153,12 +168,16 @@ class Generator:
         if kind == "array":
             name = self.random.choice(sorted(ARRAYS))
             return Expression(
-                f"{name}[{inner.text} & 7]", ARRAYS[name], lambda s: s[name][inner.value(s) & 7]
+                f"{name}[{inner.text} & 7]",
+                ARRAYS[name],
+                lambda s: s.arrays[name][inner.value(s) & 7],
             )
         if kind == "table":
             name = self.random.choice(sorted(TABLES))
             return Expression(
-                f"{name}[{inner.text} & 7]", TABLES[name][0], lambda s: TABLES[name][1][inner.value(s) & 7]
+                f"{name}[{inner.text} & 7]",
+                TABLES[name][0],
+                lambda s: TABLES[name][1][inner.value(s) & 7],
             )
         return Expression(
             f"{kind}_mix((uint8_t){left.text}, (uint16_t){right.text})",
@@ -171,9 +190,9 @@ class Generator:
         kind = self.random.choice(["set", "set", "element", "if", "loop", "switch", "add"])
         if depth == 0 or kind in ("set", "add"):
             return self.assignment("+=" if kind == "add" else "=")
-        return {"element": self.element, "if": self.if_, "loop": self.loop, "switch": self.switch}[kind](
-            depth - 1
-        )
+        return {"element": self.element, "if": self.if_, "loop": self.loop, "switch": self.switch}[
+            kind
+        ](depth - 1)
 
     def assignment(self, op: str) -> tuple[str, Callable[[State], None]]:
         """Return variable = or += expression."""
@@ -182,7 +201,7 @@ class Generator:
 
         def run(state: State) -> None:
             value = inner.value(state)
-            state[name] = fit(value + (state[name] if op == "+=" else 0), kind)
+            state.numbers[name] = fit(value + (state.numbers[name] if op == "+=" else 0), kind)
 
         return f"{name} {op} {inner.text};", run
 
@@ -193,7 +212,7 @@ class Generator:
 
         def run(state: State) -> None:
             value = fit(inner.value(state), ARRAYS[name])
-            state[name][index.value(state) & 7] = value
+            state.arrays[name][index.value(state) & 7] = value
 
         return f"{name}[{index.text} & 7] = {inner.text};", run
 
@@ -248,4 +267,7 @@ class Generator:
                 do(state)
 
         body = "\n    ".join(text for text, _ in parts)
-        return f"static void {name}(void)\n{{\n    uint8_t i0;\n    uint8_t i1;\n    {body}\n}}\n", run
+        return (
+            f"static void {name}(void)\n{{\n    uint8_t i0;\n    uint8_t i1;\n    {body}\n}}\n",
+            run,
+        )

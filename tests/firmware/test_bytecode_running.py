@@ -16,6 +16,10 @@ from firmware.random_c import ARRAYS, LENGTH, TABLES, U8, VARIABLES, Generator, 
 from firmware.test_shrink_running import ROOT, SDCC, SDCC_FLAGS
 
 FUNCTIONS = 12
+ASSEMBLER: tuple[str | Path, ...] = (
+    *("gpasm", "-p18f4550", "-w2"),
+    *("-I", ROOT / "firmware/bytecode"),
+)
 TOOLCHAIN = ROOT / "firmware/toolchain"
 
 NATIVE = """
@@ -120,7 +124,17 @@ def build(folder: Path, source: str) -> Path:
     objects = []
     for path in (*own, folder / "bytes.asm", folder / "shrunk.asm"):
         objects.append(folder / f"{path.stem}.o")
-        run("gpasm", "-p18f4550", "-w2", "-c", path, "-o", objects[-1])
+        run(
+            "gpasm",
+            "-p18f4550",
+            "-w2",
+            "-I",
+            ROOT / "firmware/bytecode",
+            "-c",
+            path,
+            "-o",
+            objects[-1],
+        )
     run(SDCC / "bin/sdcc", *SDCC_FLAGS, "-c", ROOT / "build/firmware/sfr.c", "-o", "sfr.o")
     linker: list[str | Path] = ["gplink", "-q", "-c", "-m", "-s", ROOT / "firmware/tornillo.lkr"]
     run(*linker, "-o", "all.hex", *objects, "sfr.o", SDCC / "lib/libsdcc.lib")

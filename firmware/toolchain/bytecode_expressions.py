@@ -6,29 +6,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import ClassVar
 
+from bytecode_conditions import Conditions
 from bytecode_model import Place, Signature, Unit, common
-from bytecode_places import Places
-from bytecode_types import I16, U8, U16, VOID, Type, fit, refuse
+from bytecode_operators import COMMUTATIVE, FROM_RAM, LIBRARY, SIMPLE_OPERATIONS, SWAPPED
+from bytecode_types import I16, U8, U16, VOID, Type, refuse
 from pycparser import c_ast
 
-SWAPPED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
-INVERTED = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
-SIGNED_JUMP = {"<": "jlt", ">=": "jge", ">": "jgt", "<=": "jle", "==": "jeq", "!=": "jne"}
-UNSIGNED_JUMP = SIGNED_JUMP | {"<": "jltu", ">=": "jgeu", ">": "jgtu", "<=": "jleu"}
-SIMPLE_OPERATIONS = {"+": "add", "-": "sub", "&": "and", "|": "or", "^": "xor"}
-COMMUTATIVE = {"+", "&", "|", "^", "*"}
-FROM_RAM = {"add8", "add16", "sub8", "sub16", "and8", "and16", "or8", "or16", "xor8"}
-LIBRARY = {"*": "_mulint", "/": "_divuint", "%": "_moduint"}
 
-
-class Expressions(Places):
+class Expressions(Conditions):
     """Compiles expressions into the operations of one function."""
 
     # --- expressions -----------------------------------------------------------
-
-    def constant(self, node: c_ast.Node) -> int | None:
-        """Return the value of a constant expression, None if it is none."""
-        return self.types.maybe_constant(node)
 
     def value(self, node: c_ast.Node) -> Type:
         """A = expression; returns its type."""
@@ -231,13 +219,6 @@ class Expressions(Places):
         if shift:
             self.emit("shl" if op == "*" else "shr", shift)
 
-    def stacked(self, op: str, left: c_ast.Node, right: c_ast.Node) -> None:
-        """A = left op right with the right side on the stack."""
-        self.value(right)
-        self.emit("push")
-        self.value(left)
-        self.emit(op)
-
     def shift(self, node: c_ast.BinaryOp) -> Type:
         """A = left << >> right."""
         count = self.constant(node.right)
@@ -252,13 +233,6 @@ class Expressions(Places):
         else:
             self.emit("shr", count)
         return kind
-
-    def simple(self, node: c_ast.Node) -> bool:
-        """Tell whether an expression can be the right side of an operation as it is."""
-        if self.constant(node) is not None:
-            return True
-        place = self.place(node)
-        return place is not None and place[1].size in (1, 2)
 
     # --- calls -----------------------------------------------------------------
 
@@ -373,80 +347,6 @@ class Expressions(Places):
         self.binary(c_ast.BinaryOp(op, node.lvalue, node.rvalue, node.coord))
         self.store(*place)
         return place[1]
-
-    # --- conditions ------------------------------------------------------------
-
-    def jump_if(self, node: c_ast.Node, label: str) -> None:
-        """Jump where the expression is true."""
-        self.condition(node, label, True)
-
-    def jump_unless(self, node: c_ast.Node, label: str) -> None:
-        """Jump where the expression is false."""
-        self.condition(node, label, False)
-
-    def condition(self, node: c_ast.Node, label: str, wanted: bool) -> None:
-        """Jump where the truth of the expression is as wanted."""
-        number = self.constant(node)
-        if number is not None:
-            if bool(number) == wanted:
-                self.emit("jmp", label)
-            return
-        match node:
-            case c_ast.UnaryOp(op="!"):
-                self.condition(node.expr, label, not wanted)
-            case c_ast.BinaryOp(op="&&" | "||"):
-                self.both(node, label, wanted)
-            case c_ast.BinaryOp(op=op) if op in SWAPPED:
-                self.comparison(node, label, wanted)
-            case _:
-                self.value(node)
-                self.emit("jnz" if wanted else "jz", label)
-
-    def both(self, node: c_ast.BinaryOp, label: str, wanted: bool) -> None:
-        """Jump by && or ||."""
-        if (node.op == "||") == wanted:
-            self.condition(node.left, label, wanted)
-            self.condition(node.right, label, wanted)
-            return
-        end = self.new_label()
-        self.condition(node.left, end, not wanted)
-        self.condition(node.right, label, wanted)
-        self.put(end)
-
-    def comparison(self, node: c_ast.BinaryOp, label: str, wanted: bool) -> None:
-        """Jump by a comparison."""
-        op, left, right = node.op, node.left, node.right
-        kind = common(self.type_of(left), self.type_of(right))
-        if self.constant(left) is not None or (self.simple(left) and not self.simple(right)):
-            op, left, right = SWAPPED[op], right, left
-        if not wanted:
-            op = INVERTED[op]
-        number = self.constant(right)
-        if number is not None:
-            number = fit(number, kind)
-            if op == ">":
-                op, number = ">=", number + 1
-            elif op == "<=":
-                op, number = "<", number + 1
-            if (number == 0 and op in ("==", "!=")) or (number == 1 and not kind.signed):
-                if op in ("==", "!=") and number == 0:
-                    self.value(left)
-                    self.emit("jz" if op == "==" else "jnz", label)
-                    return
-                if op in ("<", ">="):
-                    self.value(left)
-                    self.emit("jz" if op == "<" else "jnz", label)
-                    return
-            self.value(left)
-            self.emit("cmpk", number & 0xFFFF)
-        else:
-            place = self.place(right)
-            if place is not None and place[1].size in (1, 2):
-                self.value(left)
-                self.emit(f"cmp{8 * place[1].size}", place[0])
-            else:
-                self.stacked("cmps", left, right)
-        self.emit((SIGNED_JUMP if kind.signed else UNSIGNED_JUMP)[op], label)
 
     VALUES: ClassVar[dict[type[c_ast.Node], Callable[..., Type]]] = {
         c_ast.ArrayRef: indexed,

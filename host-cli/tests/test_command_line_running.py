@@ -357,7 +357,7 @@ def test_every_verb_passes_a_refusal_on_with_its_remedy(
 
 
 def test_the_bar_is_shown_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tornillo.commands.following import on_terminal
+    from tornillo.commands.progress import on_terminal
 
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert on_terminal()

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from tornillo.commands.connection import machine_option
+from tornillo.commands.progress import busy
 from tornillo.machine import Machine
 from tornillo.part import Part
 
@@ -25,7 +26,8 @@ def draw(file: str, output: str, machine: str) -> None:
     """Draw FILE: stock, finished shape, passes and dimensions.
 
     \b
-    Example: tornillo draw examples/test-bar.toml -o test-bar.svg
+    Examples: tornillo draw examples/test-bar.toml -o test-bar.svg
+              tornillo draw examples/test-bar.toml -o test-bar.png
     """
     from tornillo.drawing import draw_part
 
@@ -34,7 +36,8 @@ def draw(file: str, output: str, machine: str) -> None:
     part = Part.load(file)
     known = Machine.load(machine)
     part.check(known)
-    draw_part(part, known, Path(output))
+    with busy("drawing"):
+        draw_part(part, known, Path(output))
     click.echo(f"{output} written")
 
 

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wait for a run or a homing to end, showing its progress; Ctrl-C holds or stops it."""
+"""Wait for a run or a homing to end, showing its progress."""
 
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import click
 
-from tornillo.errors import ChipError, TornilloError
+from tornillo.commands.progress import busy, on_terminal
+from tornillo.errors import TornilloError
 from tornillo.image import OPERATIONS, PartImage
 from tornillo.lathe import Lathe
-from tornillo.protocol import PERMILLE_DONE, ErrorCode, PauseRecord, State, ToolRecord
+from tornillo.protocol import PERMILLE_DONE, PauseRecord, State, ToolRecord
 from tornillo.status import Status
 
 POLL_S = 0.1
@@ -22,16 +22,13 @@ Display = Callable[[int, str], None]
 def follow_homing(lathe: Lathe) -> Status:
     """Wait until homing has ended; return the status then.
 
-    Raises AlarmError when it failed, TornilloError after Ctrl-C.
+    Raises AlarmError when it failed.
     """
-    try:
-        with lathe.watch(lambda status: status.state is not State.HOMING, POLL_S) as watch:
-            status = watch.wait()
-    except KeyboardInterrupt:
-        lathe.stop()
-        raise TornilloError(
-            "homing was stopped", "acknowledge with `tornillo reset`, then `tornillo home` again"
-        ) from None
+    with (
+        busy("homing"),
+        lathe.watch(lambda status: status.state is not State.HOMING, POLL_S) as watch,
+    ):
+        status = watch.wait()
     if status.state is State.ALARM:
         raise status.alarm_error()
     return status
@@ -40,13 +37,10 @@ def follow_homing(lathe: Lathe) -> Status:
 def follow_run(lathe: Lathe) -> None:
     """Show the progress of the run until the part is finished.
 
-    Raises AlarmError for an alarm, TornilloError when the run was stopped or held by Ctrl-C.
+    Raises AlarmError for an alarm, TornilloError when the run was stopped.
     """
-    try:
-        with _display() as show:
-            status = _until_standing(lathe, show)
-    except KeyboardInterrupt:
-        raise _held(lathe) from None
+    with _display() as show:
+        status = _until_standing(lathe, show)
     if status.state is State.ALARM:
         raise status.alarm_error()
     if not status.finished:
@@ -115,26 +109,6 @@ def asked_for(image: PartImage, operation: int) -> str:
                 return f"put in the tool {tool.name.rstrip(bytes(1)).decode('ascii', 'replace')}"
             tool = None
     return STEP_MESSAGE
-
-
-def _held(lathe: Lathe) -> TornilloError:
-    """Hold the run after Ctrl-C and say where it stands."""
-    try:
-        lathe.hold()
-    except ChipError as error:
-        if error.code is not ErrorCode.NOT_RUNNING:
-            raise
-        return TornilloError("interrupted; the lathe was not cutting", "see `tornillo status`")
-    status = lathe.status()
-    return TornilloError(
-        f"held by Ctrl-C at {describe(status).removesuffix(', held')}; nothing is lost",
-        "go on with `tornillo resume --follow`, or give up with `tornillo stop`",
-    )
-
-
-def on_terminal() -> bool:
-    """Whether messages go to a terminal."""
-    return sys.stderr.isatty()
 
 
 @contextmanager

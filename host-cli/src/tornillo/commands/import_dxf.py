@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tornillo.commands.connection import machine_option
+from tornillo.commands.progress import busy
 from tornillo.errors import DrawingError, TornilloError
 from tornillo.machine import Machine
 from tornillo.protocol import NAME_LENGTH
@@ -198,7 +199,8 @@ def import_dxf(
             raise TornilloError(f"{path} exists already", "choose another name, or add --force")
     task = Import(Path(file), _view(said), Machine.load(machine))
     try:
-        text = task.part_text(_cutting(said))
+        with busy("reading the drawing"):
+            text = task.part_text(_cutting(said))
     except DrawingError as error:
         _show_problem(task, error, Path(picture or f"{output.removesuffix('.toml')}.problem.svg"))
         raise

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from tornillo.commands.completion import complete_parts
 from tornillo.commands.connection import (
     connected,
     json_option,
@@ -14,6 +15,7 @@ from tornillo.commands.connection import (
     print_json,
     print_table,
 )
+from tornillo.commands.progress import busy
 from tornillo.errors import ChipError, PartError, TornilloError
 from tornillo.machine import Machine
 from tornillo.part import Part
@@ -24,21 +26,27 @@ from tornillo.stored import units_of
 from tornillo.toml_lines import Place
 
 file_argument = click.argument("file", type=click.Path(dir_okay=False))
-part_argument = click.argument("part")
+part_argument = click.argument("part", shell_complete=complete_parts)
 
 
 @click.command()
 @file_argument
+@json_option
 @machine_option
-def check(file: str, machine: str) -> None:
+def check(file: str, as_json: bool, machine: str) -> None:
     """Say whether FILE can be made, and what is wrong with it.
 
     \b
-    Example: tornillo check examples/test-bar.toml
+    Examples: tornillo check examples/test-bar.toml
+              tornillo check examples/test-bar.toml --json
     """
     part = Part.load(file)
     known = Machine.load(machine)
-    problems = list(part.problems(known))
+    with busy("checking"):
+        problems = list(part.problems(known))
+    if as_json:
+        _print_verdict(part, known, problems)
+        return
     for problem in problems[:-1]:
         click.secho(f"Error: {problem}", fg="red", err=True)
         click.echo(f"Try: {problem.remedy}", err=True)
@@ -52,17 +60,40 @@ def check(file: str, machine: str) -> None:
         click.echo(f"Note: {note}")
 
 
+def _print_verdict(part: Part, known: Machine, problems: list[PartError]) -> None:
+    """What `check` found, for scripts; exits with 1 when there are problems."""
+    print_json(
+        {
+            "name": part.name,
+            "machine": known.name,
+            "operations": len(part.operations),
+            "bytes": None if problems else len(part.image(known)),
+            "problems": [
+                {"message": str(problem), "remedy": problem.remedy} for problem in problems
+            ],
+            "notes": [] if problems else list(part.notes(known)),
+        }
+    )
+    if problems:
+        sys.exit(1)
+
+
 @click.command()
 @file_argument
-def upload(file: str) -> None:
+@json_option
+def upload(file: str, as_json: bool) -> None:
     """Check FILE, store it in the lathe and verify what was stored.
 
+    Interrupted by Ctrl-C or a pulled cable, nothing is stored, and what was there stays.
+
     \b
-    Example: tornillo upload examples/test-bar.toml
+    Examples: tornillo upload examples/test-bar.toml
+              tornillo upload examples/test-bar.toml --json
     """
     part = Part.load(file)
     with connected() as lathe:
-        image = part.image(lathe.machine())
+        with busy("checking"):
+            image = part.image(lathe.machine())
         label = f"Uploading {part.name}"
         with click.progressbar(length=len(image), label=label, file=sys.stderr) as bar:
             done = 0
@@ -76,6 +107,9 @@ def upload(file: str) -> None:
                 slot = lathe.upload(image, advance)
             except ChipError as error:
                 raise _with_the_line(part, error) from error
+    if as_json:
+        print_json({"name": part.name, "slot": slot, "bytes": len(image), "verified": True})
+        return
     click.echo(f"{part.name} is stored in slot {slot}, {len(image)} bytes, verified")
 
 

@@ -4,6 +4,7 @@
 import click
 
 from tornillo.commands.connection import connected, json_option, machine_option, print_json
+from tornillo.commands.progress import busy
 from tornillo.drives import Drives
 from tornillo.lathe import Lathe
 from tornillo.machine import Machine
@@ -37,8 +38,9 @@ def plan(file: str, moves: bool, lathe: bool, as_json: bool, machine: str) -> No
     else:
         known = Machine.load(machine)
         drives = Drives.usual(known)
-    part.check(known)
-    report = PlanReport(part, known, drives)
+    with busy("planning"):
+        part.check(known)
+        report = PlanReport(part, known, drives)
     if as_json:
         print_json(report.json(moves))
         return

@@ -5,6 +5,7 @@ import dataclasses
 
 import click
 
+from tornillo.commands.completion import complete_parts
 from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.commands.following import describe, follow_homing, follow_run, pause_message
 from tornillo.lathe import Lathe
@@ -33,7 +34,7 @@ def home() -> None:
 
 
 @click.command()
-@click.argument("part", required=False)
+@click.argument("part", required=False, shell_complete=complete_parts)
 @click.option("--step", is_flag=True, help="Pause after each operation.")
 @follow_option
 def run(part: str | None, step: bool, follow: bool) -> None:

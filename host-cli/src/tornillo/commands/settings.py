@@ -6,6 +6,7 @@ import math
 
 import click
 
+from tornillo.commands.completion import complete_settings
 from tornillo.commands.connection import connected, json_option, print_json, print_table
 from tornillo.errors import TornilloError
 from tornillo.protocol import SETTINGS, Axis, Setting
@@ -53,19 +54,27 @@ def settings(context: click.Context, as_json: bool) -> None:
 
 
 @settings.command("get")
-@click.argument("name")
+@click.argument("name", shell_complete=complete_settings)
 def get_setting(name: str) -> None:
-    """Print the value of NAME alone."""
+    """Print the value of NAME alone.
+
+    \b
+    Example: tornillo settings get travel_z
+    """
     entry = _named(name)
     with connected() as lathe:
         click.echo(lathe.setting(entry.id).value)
 
 
 @settings.command("set", context_settings={"ignore_unknown_options": True})
-@click.argument("name")
+@click.argument("name", shell_complete=complete_settings)
 @click.argument("value", type=int)
 def set_setting(name: str, value: int) -> None:
-    """Change NAME to VALUE and store it in the lathe."""
+    """Change NAME to VALUE and store it in the lathe.
+
+    \b
+    Example: tornillo settings set rapid_rate_x 900
+    """
     entry = _named(name)
     with connected() as lathe:
         now = lathe.setting(entry.id)
@@ -118,7 +127,11 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
 )
 @units_option
 def zero_x(diameter: float, units: str) -> None:
-    """The tool touches this diameter."""
+    """The tool touches this diameter.
+
+    \b
+    Example: tornillo zero x --diameter 25.4
+    """
     with connected() as lathe:
         scale = Scale(units, lathe.machine())
         lathe.zero(Axis.X, scale.radius_steps(diameter))
@@ -129,7 +142,11 @@ def zero_x(diameter: float, units: str) -> None:
 @click.option("--at", type=float, required=True, callback=_finite, help="z where the tool stands.")
 @units_option
 def zero_z(at: float, units: str) -> None:
-    """The tool stands at this z; 0 is the finished front face."""
+    """The tool stands at this z; 0 is the finished front face.
+
+    \b
+    Example: tornillo zero z --at 0 --units inch
+    """
     with connected() as lathe:
         scale = Scale(units, lathe.machine())
         lathe.zero(Axis.Z, scale.z_steps(at))

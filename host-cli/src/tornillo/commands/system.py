@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from tornillo import udev as udev_rule
-from tornillo.commands.connection import connected
+from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.protocol import SERIAL_LENGTH
 
 #: Letters and digits that are not taken for one another.
@@ -18,7 +18,8 @@ PREFIX = "TN"
 @click.command()
 @click.argument("new", required=False)
 @click.option("--random", "at_random", is_flag=True, help="Choose a new number at random.")
-def serial(new: str | None, at_random: bool) -> None:
+@json_option
+def serial(new: str | None, at_random: bool, as_json: bool) -> None:
     """Show the serial number of the lathe, or change it to NEW (8 characters).
 
     With numbers of their own several lathes can be told apart: `tornillo --port NUMBER ...`.
@@ -34,10 +35,14 @@ def serial(new: str | None, at_random: bool) -> None:
         new = random_number()
     with connected() as lathe:
         old = lathe.serial_number
-        if new is None:
-            click.echo(old)
-            return
-        lathe.set_serial_number(new)
+        if new is not None:
+            lathe.set_serial_number(new)
+    if as_json:
+        print_json({"serial_number": new or old, "before": old})
+        return
+    if new is None:
+        click.echo(old)
+        return
     click.echo(f"serial number was {old}, is {new}")
     click.echo("the computer sees it when the cable is plugged in again", err=True)
 

@@ -14,8 +14,9 @@ PAWN = Path(__file__).resolve().parents[1] / "examples" / "pawn.dxf"
 
 
 @pytest.fixture
-def terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Messages go to a terminal."""
+def terminal(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Messages go to a terminal; files to a folder of the test."""
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("tornillo.commands.progress.on_terminal", lambda: True)
     monkeypatch.setenv("TERM", "xterm")
     monkeypatch.setenv("FORCE_COLOR", "1")
@@ -37,12 +38,9 @@ def test_what_takes_longer_shows_a_bar_on_a_terminal(
     tornillo: Tornillo,
     chip: ScriptedChip,
     test_bar: Path,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
     words: tuple[str, ...],
     text: str,
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     chip.coming = [IDLE._replace(state=State.HOMING), IDLE]
     result = tornillo(*(test_bar if word == "BAR" else word for word in words))
     assert result.exit_code == 0

@@ -17,6 +17,7 @@ class Verb(NamedTuple):
 
 SECTIONS: dict[str, dict[str, Verb]] = {
     "Parts on the computer": {
+        "new": Verb("new", "Make a part by answering questions."),
         "import-dxf": Verb("import_dxf", "Make a part file from a DXF drawing."),
         "check": Verb("parts", "Say whether a part can be made, and what is wrong with it."),
         "plan": Verb("planning", "List the passes that a part takes, and how long."),
@@ -39,8 +40,10 @@ SECTIONS: dict[str, dict[str, Verb]] = {
         "stop": Verb("running", "End the run or the homing."),
         "reset": Verb("running", "Acknowledge an alarm."),
         "status": Verb("running", "Show what the lathe does and where the tool is."),
+        "watch": Verb("watch", "Show it live, with the part; hold and go on by key."),
     },
     "Setting up": {
+        "doctor": Verb("doctor", "Check port, firmware, settings, switches and buttons."),
         "settings": Verb("settings", "List, read or change the settings of the lathe."),
         "serial": Verb("system", "Show or change the serial number."),
         "udev": Verb("system", "Print or install the udev rule for Linux."),

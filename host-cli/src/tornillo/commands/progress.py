@@ -11,6 +11,11 @@ def on_terminal() -> bool:
     return sys.stderr.isatty()
 
 
+def on_terminals() -> bool:
+    """Whether a person can press keys and see what comes of it."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
 @contextmanager
 def busy(text: str) -> Iterator[None]:
     """A moving bar with the time that has passed, for work whose length nobody knows."""

@@ -139,7 +139,7 @@ def status(as_json: bool) -> None:
         now = lathe.status()
         names = {part.slot: part.name for part in lathe.parts()}
         if as_json:
-            print_json(_as_json(lathe, now, names))
+            print_json(status_json(lathe, now, names))
             return
         rows = _as_rows(lathe, now, names)
     width = max(len(name) for name in rows)
@@ -154,7 +154,7 @@ def _position_mm(lathe: Lathe, now: Status) -> tuple[float, float]:
     return 2 * radius, (now.z - hello.zero_z) * hello.step_z_nm / NM_PER_MM
 
 
-def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, object]:
+def status_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, object]:
     """Everything known, for scripts."""
     diameter, z = _position_mm(lathe, now)
     values = dataclasses.asdict(now)

@@ -13,6 +13,7 @@ from tornillo.part import Part
 BEGIN = ["my-part", "mm", "20", "40", "", *5 * [""], "", ""]
 FACE = ["face", "", ""]
 ROUNDED = ["-5", "8", "line", "rounded", "1"]
+ARC = ["-12", "16", "arc", "40", ""]
 CHAMFERED = ["-5", "12", "line", "chamfered", "0.5"]
 #: A character of the chuck's jaws, which every row of a picture begins with.
 JAW = "\N{BRAILLE PATTERN DOTS-1358}"

@@ -122,9 +122,9 @@ def test_keys_hold_resume_and_change_the_feed(lathe: Lathe, loaded: ScriptedChip
     view.readout.percent = 10
     assert press("-") == "feed now 10 %"
     assert press("h") == "held; r goes on"
-    assert loaded.executed[-1] is Command.HOLD
+    assert loaded.executed[-1:] == [Command.HOLD]
     assert press("r") == "going on"
-    assert loaded.executed[-1] is Command.RESUME
+    assert loaded.executed[-1:] == [Command.RESUME]
     assert press("x") == "going on"
     loaded.refusals[Command.HOLD] = bytes([ErrorCode.NOT_RUNNING])
     assert "HOLD was refused" in press("h")

@@ -149,6 +149,8 @@ step "protocol files up to date" "$venv/bin/python" \
     firmware/link/generate_protocol.py --check
 step "documentation tables up to date" "$venv/bin/python" \
     docs/generate_tables.py --check
+step "documentation reference up to date" "$venv/bin/python" \
+    docs/generate_reference.py --check
 step "bash -n" shell_syntax "${shell[@]}"
 step "shellcheck" shellcheck --severity=warning "${shell[@]}"
 step "licence lines" licensed "${firmware_c[@]}" "${native[@]}" "${assembly[@]}" \

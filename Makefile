@@ -67,6 +67,11 @@ docs: firmware virtual-lathe-library ## refresh what is generated in docs/, buil
 	@$(PYTHON) -m mkdocs --quiet build --strict
 	@echo "build/site/index.html"
 
+.PHONY: wheel
+wheel: | $(SETUP_STAMP) ## build the package for pip and pipx into build/wheel
+	@$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -w build/wheel ./host-cli
+	@ls build/wheel/*.whl
+
 .PHONY: clean
 clean: ## remove build/ and the Python environment; the compiler cache stays
 	rm -rf build $(VENV)

@@ -7,6 +7,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from tornillo.version import __version__
+
 if TYPE_CHECKING:
     from tornillo.errors import (
         AlarmError,
@@ -26,9 +28,6 @@ if TYPE_CHECKING:
     from tornillo.status import Status
     from tornillo.stored import StoredPart
     from tornillo.watching import Watch
-
-#: The one place that tells the version; package, documentation and `--version` take it from here.
-__version__ = "0.1.0"
 
 __all__ = [
     "AlarmError",

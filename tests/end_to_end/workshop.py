@@ -81,6 +81,11 @@ class Workshop:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        """Switch off and read the report, unless that was done before."""
+        if not self.report:
+            self.switch_off()
+
+    def switch_off(self) -> None:
         """Switch off and read the report."""
         if self._lathe.poll() is None:
             self._lathe.terminate()

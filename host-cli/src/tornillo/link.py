@@ -115,7 +115,7 @@ class Link:
         raise NoAnswerError(
             f"no answer to {Command(frame.code).name} after {tries} tries",
             "check that the port is the lathe's and that no other program uses it; "
-            "unplug and plug in the cable",
+            "unplug and plug in the cable; a part being cut goes on without the computer",
             self.heard,
         )
 

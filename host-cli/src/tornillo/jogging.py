@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Moving the slides by keys: what each key means, and the dead-man behind it.
 
-A terminal repeats a key that is held down and never tells that it was released. So every
-repeat renews a dead-man's time in the chip; when the repeats stay away, or the link does, the
-chip brakes by itself. DEADMAN_MS and the way to brake together stay below 200 ms.
-
-The chip takes a JOG of the same axis and direction as a renewal and never makes its way longer.
+A terminal repeats a key that is held down and never tells that it was released. So a move goes
+on as long as the repeats come; RELEASED_S after the last one it is held. When the link is lost
+the chip brakes by itself, because it hears no more questions. Both together with the way to
+brake stay below STOPPED_WITHIN_S.
 """
 
+import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Protocol
 
 from tornillo.language import _
@@ -17,15 +16,13 @@ from tornillo.protocol import Axis
 from tornillo.status import Status
 from tornillo.units import NM_PER_UNIT, SECONDS_PER_MINUTE, Scale
 
-#: From the last sign of a held key to the begin of braking, in milliseconds. Terminals repeat
-#: keys every 30 to 40 ms, the Linux console every 92.
-DEADMAN_MS = 120
+#: From the last sign of a held key to the request to hold, in seconds. Terminals repeat keys
+#: every 25 to 40 ms, macOS every 90.
+RELEASED_S = 0.1
 #: From the release of the key, or the loss of the link, to the stand, in seconds.
 STOPPED_WITHIN_S = 0.2
-#: Looking up takes the chip a tick of a millisecond or two.
-TICKS_S = 0.003
-#: A step by its size is renewed while it needs longer than this, in seconds.
-RENEW_S = 0.08
+#: What drawing the screen, one question and one answer may add, in seconds.
+LATE_S = 0.025
 MS_LEAST, MS_MOST = 1, 255
 SPEEDS_MS = (1, 2, 3, 5, 8, 10, 15, 20, 30, 50, 80, 100, 150, 200, 255)
 #: Step sizes that a key chooses, in units; 0 is one step of the motor.
@@ -37,35 +34,26 @@ ARROWS = {
     "up": (Axis.X, 1),
     "down": (Axis.X, -1),
 }
-#: Farther than any slide: the soft limits or the dead-man end the way.
+#: Where nothing is known of the place: farther than any slide; releasing the key ends the way.
 FAR_STEPS = 32000
 
 
 class Mover(Protocol):
     """What moves; `tornillo.Lathe` does."""
 
-    def jog(self, axis: Axis, steps: int, rate: int, deadman_ms: int = 0) -> None:
-        """Move `axis` by `steps` at `rate` step/s, until the dead-man's time runs out."""
+    def jog(self, axis: Axis, steps: int, rate: int = 0) -> None:
+        """Move `axis` by `steps` at `rate` step/s, as long as the chip hears of us."""
 
-    def stop(self) -> None:
+    def hold(self) -> None:
         """Brake and stand."""
 
     def status(self) -> Status:
-        """Where the tool is."""
-
-
-@dataclass(frozen=True)
-class Step:
-    """A move by a size that is under way: it ends at machine step `target` of `axis`."""
-
-    axis: Axis
-    target: int
-    rate: int
+        """Where the tool is; also the sign of life that the chip waits for."""
 
 
 def fastest(start: int, acceleration: int) -> int:
     """The rate, step/s, from which the axes brake in what the dead-man leaves of 200 ms."""
-    braking_s = STOPPED_WITHIN_S - DEADMAN_MS / 1000 - TICKS_S
+    braking_s = STOPPED_WITHIN_S - RELEASED_S - LATE_S
     return int(start + acceleration * braking_s)
 
 
@@ -75,9 +63,18 @@ class JogPad:
     `message` is what the person should know about the last key.
     """
 
-    def __init__(self, mover: Mover, scale: Scale, rapid: int, most: int) -> None:
-        """Begin with single steps at 10 ms each."""
+    def __init__(
+        self,
+        mover: Mover,
+        scale: Scale,
+        rapid: int,
+        most: int,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """Begin with single steps at 10 ms each; `now` tells the time in seconds."""
         self.mover = mover
+        self._now = now
+        self._last = 0.0
         self.scale = scale
         self._rapid, self._most = min(rapid, most), most
         self.ms_per_step = 10
@@ -86,7 +83,6 @@ class JogPad:
         self.size = 0
         self.entry = ""
         self.message = ""
-        self._step: Step | None = None
         self._held: tuple[Axis, int] | None = None
         self._actions: dict[str, Callable[[], str]] = {
             "+": lambda: self._speed(-1),
@@ -129,41 +125,50 @@ class JogPad:
         elif key in self._actions:
             self.message = self._actions[key]()
 
-    def idle(self, status: Status) -> None:
-        """Nothing was pressed: keep a move by a size alive; a held key was released."""
-        if self._held is not None and not status.moving:
-            self._held = None
-        step = self._step
-        if step is None:
-            return
-        here = status.x if step.axis is Axis.X else status.z
-        left = step.target - here
-        if not status.moving or left == 0:
-            self._step = None
-        elif abs(left) / step.rate > RENEW_S:
-            self.mover.jog(step.axis, left, step.rate, DEADMAN_MS)
+    @property
+    def patience_s(self) -> float:
+        """How long to wait for the next key before `idle` must be called, at most."""
+        if self._held is None:
+            return RELEASED_S
+        return max(0.0, self._last + RELEASED_S - self._now())
+
+    def idle(self) -> None:
+        """No key came: a held one may have been released."""
+        if self._held is not None and self.patience_s == 0:
+            self._stop()
 
     def _arrow(self, axis: Axis, sign: int, status: Status) -> None:
         """Move, or go on moving."""
         self.message = ""
         if self.continuous:
-            if self._held not in (None, (axis, sign)):
+            self._last = self._now()
+            if self._held == (axis, sign):
+                return
+            if self._held is not None:
                 self._stop()
                 return
             self._held = (axis, sign)
-            self.mover.jog(axis, sign * FAR_STEPS, self.rate, DEADMAN_MS)
-            return
-        if self._step is not None:
+            steps = self._way(axis, sign, status)
+        elif status.moving:
             return  # a repeat of the key while its step is being made
+        else:
+            steps = sign * self.steps(axis)
+        if steps:
+            self.mover.jog(axis, steps, self.rate)
+
+    def _way(self, axis: Axis, sign: int, status: Status) -> int:
+        """Steps to the end of the travel, where it is known."""
+        if not status.homed:
+            return sign * FAR_STEPS
+        machine = self.scale.machine
         here = status.x if axis is Axis.X else status.z
-        steps = sign * self.steps(axis)
-        self._step = Step(axis, here + steps, self.rate)
-        self.mover.jog(axis, steps, self.rate, DEADMAN_MS)
+        least = -machine.travel_x if axis is Axis.X else -machine.travel_z
+        return -here if sign > 0 else least - here
 
     def _stop(self) -> str:
         """Brake now."""
-        self._held = self._step = None
-        self.mover.stop()
+        self._held = None
+        self.mover.hold()
         return _("stopped")
 
     def _speed(self, by: int) -> str:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The screen of the interactive `tornillo jog`."""
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from tornillo.errors import ChipError
@@ -13,7 +14,7 @@ from tornillo.status import Status
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-#: Seconds without a key from one look at the lathe to the next; the dead-man waits for four.
+#: Seconds without a key from one look at the lathe to the next; the chip waits for three.
 LOOK_S = 0.03
 
 
@@ -29,10 +30,11 @@ def show_pad(pad: JogPad, keys: Keys) -> None:
             while pressed != "q":
                 status = pad.mover.status()
                 live.update(frame(pad, status), refresh=True)
-                pressed = keys.read(LOOK_S)
+                pressed = keys.read(min(LOOK_S, pad.patience_s))
                 use_key(pad, pressed, status)
     finally:
-        pad.mover.stop()
+        with suppress(ChipError):  # nothing moves
+            pad.mover.hold()
 
 
 def use_key(pad: JogPad, key: str | None, status: Status) -> None:
@@ -41,7 +43,7 @@ def use_key(pad: JogPad, key: str | None, status: Status) -> None:
         if key and key != "q":
             pad.press(key, status)
         else:
-            pad.idle(status)
+            pad.idle()
     except ChipError as error:
         pad.message = _("{error}; try: {remedy}").format(error=error, remedy=error.remedy)
 

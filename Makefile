@@ -67,6 +67,10 @@ docs: firmware virtual-lathe-library ## refresh what is generated in docs/, buil
 	@$(PYTHON) -m mkdocs --quiet build --strict
 	@echo "build/site/index.html"
 
+.PHONY: catalogues
+catalogues: | $(SETUP_STAMP) ## collect all messages, list those without a translation, compile
+	@$(PYTHON) host-cli/make_catalogues.py
+
 .PHONY: wheel
 wheel: | $(SETUP_STAMP) ## build the package for pip and pipx into build/wheel
 	@$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -w build/wheel ./host-cli

@@ -112,7 +112,8 @@ class Workshop:
             text=True,
             timeout=STUCK_S,
             check=False,
-            env=os.environ | {"COLUMNS": "200", "NO_COLOR": "1", "TERM": "dumb"},
+            env=os.environ
+            | {"COLUMNS": "200", "NO_COLOR": "1", "TERM": "dumb", "TORNILLO_LANG": "en"},
         )
 
     def must(self, *arguments: str | Path) -> str:

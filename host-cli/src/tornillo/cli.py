@@ -12,6 +12,8 @@ from typing import Any, NoReturn
 import click
 
 from tornillo import __version__
+from tornillo.help_texts import translate
+from tornillo.language import _, chosen, use
 from tornillo.verbs import SECTIONS, VERBS
 
 
@@ -30,8 +32,13 @@ class LateGroup(click.Group):
         if name not in VERBS:
             return None
         module = import_module(f"tornillo.commands.{VERBS[name].module}")
-        found: click.Command = next(verb for verb in module.VERBS if verb.name == name)
-        return found
+        return translate(next(verb for verb in module.VERBS if verb.name == name))
+
+    def make_context(self, *arguments: Any, **options: Any) -> click.Context:
+        """Begin a command line, in the user's language."""
+        use(chosen())
+        translate(self)
+        return super().make_context(*arguments, **options)
 
     def resolve_command(
         self, context: click.Context, arguments: list[str]
@@ -41,22 +48,30 @@ class LateGroup(click.Group):
             from difflib import get_close_matches
 
             close = get_close_matches(arguments[0], VERBS, n=1)
-            remedy = f'did you mean "{close[0]}"?' if close else "see `tornillo --help`"
-            context.fail(f'there is no verb "{arguments[0]}"; {remedy}')
+            remedy = (
+                _('did you mean "{close}"?').format(close=close[0])
+                if close
+                else _("see `tornillo --help`")
+            )
+            context.fail(
+                _('there is no verb "{arguments}"; {remedy}').format(
+                    arguments=arguments[0], remedy=remedy
+                )
+            )
         return super().resolve_command(context, arguments)
 
     def format_commands(self, _context: click.Context, formatter: click.HelpFormatter) -> None:
         """List the verbs by section."""
         for section, verbs in SECTIONS.items():
-            with formatter.section(section):
-                formatter.write_dl([(name, verb.summary) for name, verb in verbs.items()])
+            with formatter.section(_(section)):
+                formatter.write_dl([(name, _(verb.summary)) for name, verb in verbs.items()])
 
     def shell_complete(self, context: click.Context, incomplete: str) -> list[Any]:
         """Complete a verb without importing any; options as usual."""
         from click.shell_completion import CompletionItem
 
         verbs = [
-            CompletionItem(name, help=verb.summary)
+            CompletionItem(name, help=_(verb.summary))
             for name, verb in VERBS.items()
             if name.startswith(incomplete)
         ]
@@ -67,12 +82,12 @@ class LateGroup(click.Group):
         try:
             return super().invoke(context)
         except KeyboardInterrupt:
-            _fail("interrupted", "`tornillo status` says what the lathe is doing")
+            _fail("interrupted", _("`tornillo status` says what the lathe is doing"))
         except Exception as error:
             from tornillo.errors import TornilloError
 
             if isinstance(error, OSError) and error.filename is not None:
-                _fail(f"{error.filename}: {error.strerror}", "check name, place and rights")
+                _fail(f"{error.filename}: {error.strerror}", _("check name, place and rights"))
             if not isinstance(error, TornilloError):
                 raise
             _fail(str(error), error.remedy)
@@ -80,8 +95,8 @@ class LateGroup(click.Group):
 
 def _fail(message: str, remedy: str) -> NoReturn:
     """Say what happened and what to do, and end with 1."""
-    click.secho(f"Error: {message}", fg="red", err=True)
-    click.echo(f"Try: {remedy}", err=True)
+    click.secho(_("Error: {message}").format(message=message), fg="red", err=True)
+    click.echo(_("Try: {remedy}").format(remedy=remedy), err=True)
     sys.exit(1)
 
 

@@ -48,12 +48,17 @@ def chosen() -> str:
 
 def _windows_language() -> str:
     """The code of the language that Windows shows its windows in."""
-    import ctypes
     import locale
 
+    return locale.windows_locale.get(_windows_number(), "en")[:2]
+
+
+def _windows_number() -> int:
+    """The number of that language."""
+    import ctypes
+
     libraries: Any = ctypes
-    number = libraries.windll.kernel32.GetUserDefaultUILanguage()
-    return (locale.windows_locale.get(number) or "en")[:2]
+    return int(libraries.windll.kernel32.GetUserDefaultUILanguage())
 
 
 def use(language: str) -> gettext.NullTranslations:

@@ -4,6 +4,8 @@
 import click
 from click.shell_completion import CompletionItem, get_completion_class
 
+from tornillo.language import _
+
 SHELLS = ("bash", "zsh", "fish")
 VARIABLE = "_TORNILLO_COMPLETE"
 
@@ -46,7 +48,7 @@ def complete_settings(
     from tornillo.protocol import SETTINGS
 
     return [
-        CompletionItem(entry.id.name.lower(), help=entry.meaning)
+        CompletionItem(entry.id.name.lower(), help=_(entry.meaning))
         for entry in SETTINGS
         if entry.id.name.lower().startswith(incomplete.lower())
     ]

@@ -7,6 +7,7 @@ import click
 
 from tornillo.commands.connection import machine_option
 from tornillo.commands.progress import busy
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.part import Part
 
@@ -32,13 +33,13 @@ def draw(file: str, output: str, machine: str) -> None:
     from tornillo.drawing import draw_part
 
     if Path(output).suffix not in (".svg", ".png"):
-        raise click.BadParameter("the picture must end in .svg or .png", param_hint="--output")
+        raise click.BadParameter(_("the picture must end in .svg or .png"), param_hint="--output")
     part = Part.load(file)
     known = Machine.load(machine)
     part.check(known)
-    with busy("drawing"):
+    with busy(_("drawing")):
         draw_part(part, known, Path(output))
-    click.echo(f"{output} written")
+    click.echo(_("{output} written").format(output=output))
 
 
 VERBS = (draw,)

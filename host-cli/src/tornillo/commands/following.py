@@ -9,12 +9,13 @@ import click
 from tornillo.commands.progress import busy, on_terminal
 from tornillo.errors import TornilloError
 from tornillo.image import OPERATIONS, PartImage
+from tornillo.language import _, later
 from tornillo.lathe import Lathe
 from tornillo.protocol import PERMILLE_DONE, PauseRecord, State, ToolRecord
 from tornillo.status import Status
 
 POLL_S = 0.1
-STEP_MESSAGE = "step by step: look at it"
+STEP_MESSAGE = later("step by step: look at it")
 #: Shows how many permille of the run are done and what is being cut.
 Display = Callable[[int, str], None]
 
@@ -25,7 +26,7 @@ def follow_homing(lathe: Lathe) -> Status:
     Raises AlarmError when it failed.
     """
     with (
-        busy("homing"),
+        busy(_("homing")),
         lathe.watch(lambda status: status.state is not State.HOMING, POLL_S) as watch,
     ):
         status = watch.wait()
@@ -45,8 +46,8 @@ def follow_run(lathe: Lathe) -> None:
         raise status.alarm_error()
     if not status.finished:
         raise TornilloError(
-            "the run was stopped before its end",
-            "start it again from its beginning with `tornillo run`",
+            _("the run was stopped before its end"),
+            _("start it again from its beginning with `tornillo run`"),
         )
 
 
@@ -61,32 +62,43 @@ def _until_standing(lathe: Lathe, show: Display) -> Status:
         if status.state is State.PAUSE:
             if status.operation not in asked:
                 asked[status.operation] = pause_message(lathe, status)
-            text += f": {asked[status.operation]}; go on with RUN or `tornillo resume`"
+            text += _(": {asked}; go on with RUN or `tornillo resume`").format(
+                asked=asked[status.operation]
+            )
         show(status.permille, text)
         return False
 
     with lathe.watch(show_status, POLL_S) as watch:
         status = watch.wait()
     if status.finished:
-        show(PERMILLE_DONE, "finished")
+        show(PERMILLE_DONE, _("finished"))
     return status
 
 
 def describe(status: Status) -> str:
+    """What is being cut, and whether it stands still."""
+    waiting = {State.HOLD: _(", held"), State.PAUSE: _(", paused")}
+    return place(status) + waiting.get(status.state, "")
+
+
+def place(status: Status) -> str:
     """What is being cut."""
-    text = "on the way to the part"
+    text = _("on the way to the part")
     if status.operation:
-        text = f"operation {status.operation} of {status.operations}"
+        text = _("operation {operation} of {operations}").format(
+            operation=status.operation, operations=status.operations
+        )
     if status.passes:
-        text += f", pass {status.pass_number} of {status.passes}"
-    waiting = {State.HOLD: ", held", State.PAUSE: ", paused"}
-    return text + waiting.get(status.state, "")
+        text += _(", pass {pass_number} of {passes}").format(
+            pass_number=status.pass_number, passes=status.passes
+        )
+    return text
 
 
 def pause_message(lathe: Lathe, status: Status) -> str:
     """What the operator is asked for before operation `status.operation` goes on."""
     if status.slot is None:
-        return STEP_MESSAGE
+        return _(STEP_MESSAGE)
     return asked_for(lathe.image(status.slot), status.operation)
 
 
@@ -104,11 +116,13 @@ def asked_for(image: PartImage, operation: int) -> str:
         elif isinstance(record, OPERATIONS):
             count += 1
             if count == operation and isinstance(record, PauseRecord):
-                return record.message.decode("ascii", "replace") or STEP_MESSAGE
+                return record.message.decode("ascii", "replace") or _(STEP_MESSAGE)
             if count == operation and tool is not None and operation > 1:
-                return f"put in the tool {tool.name.rstrip(bytes(1)).decode('ascii', 'replace')}"
+                return _("put in the tool {tool}").format(
+                    tool=tool.name.rstrip(bytes(1)).decode("ascii", "replace")
+                )
             tool = None
-    return STEP_MESSAGE
+    return _(STEP_MESSAGE)
 
 
 @contextmanager
@@ -134,7 +148,7 @@ def _bar() -> Iterator[Display]:
         TimeElapsedColumn(),
     )
     with Progress(*columns, console=Console(stderr=True)) as progress:
-        task = progress.add_task("starting", total=PERMILLE_DONE)
+        task = progress.add_task(_("starting"), total=PERMILLE_DONE)
 
         def show(permille: int, text: str) -> None:
             progress.update(task, completed=permille, description=text)

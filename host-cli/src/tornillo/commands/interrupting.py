@@ -7,8 +7,9 @@ A run is held, so nothing is lost; anything else that moves is stopped.
 import signal
 import threading
 
-from tornillo.commands.following import describe
+from tornillo.commands.following import place
 from tornillo.errors import ChipError, LinkError, TornilloError
+from tornillo.language import _
 from tornillo.lathe import Lathe
 from tornillo.protocol import ErrorCode, State
 
@@ -25,8 +26,8 @@ def interrupted(lathe: Lathe) -> TornilloError:
         return _brought_to_a_stand(lathe)
     except LinkError as error:
         return TornilloError(
-            f"interrupted, but the lathe did not hear of it: {error}",
-            "press HOLD at the lathe if it moves; then look at cable and port",
+            _("interrupted, but the lathe did not hear of it: {error}").format(error=error),
+            _("press HOLD at the lathe if it moves; then look at cable and port"),
         )
     finally:
         if threading.current_thread() is threading.main_thread():
@@ -39,19 +40,20 @@ def _brought_to_a_stand(lathe: Lathe) -> TornilloError:
     if state is State.HOMING:
         lathe.stop()
         return TornilloError(
-            "homing was stopped", "acknowledge with `tornillo reset`, then `tornillo home` again"
+            _("homing was stopped"),
+            _("acknowledge with `tornillo reset`, then `tornillo home` again"),
         )
     if state is State.RUNNING:
         return _held(lathe)
     if state in HELD:
         return TornilloError(
-            "interrupted; the run stands still and nothing is lost",
-            "go on with `tornillo resume --follow`, or give up with `tornillo stop`",
+            _("interrupted; the run stands still and nothing is lost"),
+            _("go on with `tornillo resume --follow`, or give up with `tornillo stop`"),
         )
     if state in STANDING:
         return _nothing_moved()
     lathe.stop()
-    return TornilloError("stopped by Ctrl-C", "see where the tool is with `tornillo status`")
+    return TornilloError(_("stopped by Ctrl-C"), _("see where the tool is with `tornillo status`"))
 
 
 def _held(lathe: Lathe) -> TornilloError:
@@ -64,11 +66,11 @@ def _held(lathe: Lathe) -> TornilloError:
         return _nothing_moved()
     status = lathe.status()
     return TornilloError(
-        f"held by Ctrl-C at {describe(status).removesuffix(', held')}; nothing is lost",
-        "go on with `tornillo resume --follow`, or give up with `tornillo stop`",
+        _("held by Ctrl-C at {status}; nothing is lost").format(status=place(status)),
+        _("go on with `tornillo resume --follow`, or give up with `tornillo stop`"),
     )
 
 
 def _nothing_moved() -> TornilloError:
     """There was nothing to hold."""
-    return TornilloError("interrupted; the lathe was not cutting", "see `tornillo status`")
+    return TornilloError(_("interrupted; the lathe was not cutting"), _("see `tornillo status`"))

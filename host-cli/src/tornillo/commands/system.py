@@ -8,6 +8,7 @@ import click
 
 from tornillo import udev as udev_rule
 from tornillo.commands.connection import connected, json_option, print_json
+from tornillo.language import _
 from tornillo.protocol import SERIAL_LENGTH
 
 #: Letters and digits that are not taken for one another.
@@ -30,7 +31,7 @@ def serial(new: str | None, at_random: bool, as_json: bool) -> None:
               tornillo serial --random
     """
     if new is not None and at_random:
-        raise click.UsageError("give either a number or --random")
+        raise click.UsageError(_("give either a number or --random"))
     if at_random:
         new = random_number()
     with connected() as lathe:
@@ -43,8 +44,8 @@ def serial(new: str | None, at_random: bool, as_json: bool) -> None:
     if new is None:
         click.echo(old)
         return
-    click.echo(f"serial number was {old}, is {new}")
-    click.echo("the computer sees it when the cable is plugged in again", err=True)
+    click.echo(_("serial number was {old}, is {new}").format(old=old, new=new))
+    click.echo(_("the computer sees it when the cable is plugged in again"), err=True)
 
 
 def random_number() -> str:
@@ -74,7 +75,7 @@ def udev(install: bool, root: Path) -> None:
         click.echo(udev_rule.rule(), nl=False)
         return
     path = udev_rule.install(root)
-    click.echo(f"{path} written; unplug the lathe and plug it in again")
+    click.echo(_("{path} written; unplug the lathe and plug it in again").format(path=path))
 
 
 VERBS = (serial, udev)

@@ -22,6 +22,7 @@ from tornillo import versions
 from tornillo.errors import ChipError, LinkError, NoAnswerError, TornilloError
 from tornillo.frames import crc16
 from tornillo.image import ImageError, PartImage
+from tornillo.language import _
 from tornillo.link import Link, Transport
 from tornillo.machine import Machine
 from tornillo.opening import Notify, open_port
@@ -183,8 +184,10 @@ class Lathe:
         """
         if not OVERRIDE_MIN <= percent <= OVERRIDE_MAX:
             raise TornilloError(
-                f"a feed of {percent} % is not possible",
-                f"choose {OVERRIDE_MIN} to {OVERRIDE_MAX} percent of the programmed feed",
+                _("a feed of {percent} % is not possible").format(percent=percent),
+                _("choose {override_min} to {override_max} percent of the programmed feed").format(
+                    override_min=OVERRIDE_MIN, override_max=OVERRIDE_MAX
+                ),
             )
         self._request(Command.OVERRIDE, percent)
 
@@ -208,8 +211,10 @@ class Lathe:
         stored = UploadCommitData(*self._numbers(Command.UPLOAD_COMMIT))
         if stored.crc != crc:
             raise LinkError(
-                f"the chip stored another part than was sent (CRC {stored.crc:04x}, not {crc:04x})",
-                "upload it again; if it stays, the chip's memory is worn out",
+                _(
+                    "the chip stored another part than was sent (CRC {crc:04x}, not {crc2:04x})"
+                ).format(crc=stored.crc, crc2=crc),
+                _("upload it again; if it stays, the chip's memory is worn out"),
             )
         return stored.slot
 
@@ -237,8 +242,11 @@ class Lathe:
         if found is None:
             stored = ", ".join(part.name for part in parts) or "none"
             raise TornilloError(
-                f"no part called {name!r} is stored in the lathe",
-                f"stored are: {stored}; upload it with `tornillo upload`, or see `tornillo parts`",
+                _("no part called {name!r} is stored in the lathe").format(name=name),
+                _(
+                    "stored are: {stored}; upload it with `tornillo upload`, or see `tornillo "
+                    "parts`"
+                ).format(stored=stored),
             )
         return found
 
@@ -261,8 +269,10 @@ class Lathe:
             return PartImage.unpack(self.read(slot))
         except ImageError as error:
             raise LinkError(
-                f"the part in slot {slot} cannot be understood: {error}",
-                "use the tornillo version that it was uploaded with",
+                _("the part in slot {slot} cannot be understood: {error}").format(
+                    slot=slot, error=error
+                ),
+                _("use the tornillo version that it was uploaded with"),
             ) from error
 
     def select(self, slot: int) -> None:
@@ -294,16 +304,20 @@ class Lathe:
         fits = all("!" <= character <= "~" and character != "," for character in serial)
         if len(serial) != SERIAL_LENGTH or not fits:
             raise TornilloError(
-                f'"{serial}" cannot be a serial number',
-                f"choose {SERIAL_LENGTH} letters, digits or signs, without spaces and commas, "
-                "like TN-00042",
+                _('"{serial}" cannot be a serial number').format(serial=serial),
+                _(
+                    "choose {serial_length} letters, digits or signs, without spaces and "
+                    "commas, like TN-00042"
+                ).format(serial_length=SERIAL_LENGTH),
             )
         self._request(Command.SERIAL_SET, serial.encode("ascii"))
         self.hello = self._greet()
         if self.serial_number != serial:
             raise LinkError(
-                f"the chip has kept {self.serial_number} as its serial number, not {serial}",
-                "try again; if it stays, the chip's memory is worn out",
+                _("the chip has kept {serial_number} as its serial number, not {serial}").format(
+                    serial_number=self.serial_number, serial=serial
+                ),
+                _("try again; if it stays, the chip's memory is worn out"),
             )
 
     def _greet(self) -> HelloData:
@@ -339,7 +353,8 @@ class Lathe:
             return RESPONSES[command].unpack(data)
         except struct.error as error:
             raise LinkError(
-                f"the answer to {command.name} has {len(data)} bytes, not "
-                f"{RESPONSES[command].size}",
-                "use the tornillo version that belongs to this firmware",
+                _("the answer to {command} has {data} bytes, not {size}").format(
+                    command=command.name, data=len(data), size=RESPONSES[command].size
+                ),
+                _("use the tornillo version that belongs to this firmware"),
             ) from error

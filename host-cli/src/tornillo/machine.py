@@ -11,6 +11,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from tornillo.errors import MachineError
+from tornillo.language import _
 from tornillo.protocol import HelloData
 
 DEFAULT_MACHINE = "otmt-co"
@@ -43,7 +44,7 @@ class Machine:
     ) -> "Machine":
         """The machine as the chip describes it; `slowest`, `fastest`: spindle, rev/min."""
         return cls(
-            name="the connected lathe",
+            name=_("the connected lathe"),
             step_x_nm=hello.step_x_nm,
             step_z_nm=hello.step_z_nm,
             travel_x=hello.travel_x,
@@ -68,7 +69,8 @@ class Machine:
         except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             names = ", ".join(sorted(entry.name.removesuffix(".toml") for entry in known.iterdir()))
             raise MachineError(
-                f"machine {name}: {error}", f"use one of {names}, or the path of a machine file"
+                _("machine {name}: {error}").format(name=name, error=error),
+                _("use one of {names}, or the path of a machine file").format(names=names),
             ) from error
         return cls(
             name=name,
@@ -96,7 +98,9 @@ def _whole(values: dict[str, object], name: str, table: str, key: str) -> int:
     value = section.get(key) if isinstance(section, dict) else None
     if isinstance(value, bool) or not isinstance(value, int):
         raise MachineError(
-            f"machine {name}: [{table}] {key} must be a whole number",
-            "copy machines/otmt-co.toml and change its numbers",
+            _("machine {name}: [{table}] {key} must be a whole number").format(
+                name=name, table=table, key=key
+            ),
+            _("copy machines/otmt-co.toml and change its numbers"),
         )
     return value

@@ -8,12 +8,27 @@ import click
 from tornillo.commands.completion import complete_parts
 from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.commands.following import describe, follow_homing, follow_run, pause_message
+from tornillo.language import _, later
 from tornillo.lathe import Lathe
 from tornillo.protocol import Axis, State, StatusFlag
 from tornillo.protocol_texts import ALARM_TEXTS
 from tornillo.status import Status
 
 NM_PER_MM = 1_000_000
+#: The labels of `status`.
+LABELS = (
+    later("state"),
+    later("alarm"),
+    later("tool"),
+    later("machine"),
+    later("dead steps"),
+    later("part"),
+    later("progress"),
+    later("waits for"),
+    later("pressed"),
+    later("firmware"),
+    later("last start"),
+)
 follow_option = click.option("--follow", is_flag=True, help="Show the progress until the end.")
 
 
@@ -28,9 +43,13 @@ def home() -> None:
     """
     with connected() as lathe:
         lathe.home()
-        click.echo("homing, X first; Ctrl-C stops", err=True)
+        click.echo(_("homing, X first; Ctrl-C stops"), err=True)
         status = follow_homing(lathe)
-    click.echo(f"homed; dead steps: X {status.dead_x}, Z {status.dead_z}")
+    click.echo(
+        _("homed; dead steps: X {dead_x}, Z {dead_z}").format(
+            dead_x=status.dead_x, dead_z=status.dead_z
+        )
+    )
 
 
 @click.command()
@@ -60,7 +79,7 @@ def hold() -> None:
     """
     with connected() as lathe:
         lathe.hold()
-    click.echo("held; go on with `tornillo resume`, give up with `tornillo stop`")
+    click.echo(_("held; go on with `tornillo resume`, give up with `tornillo stop`"))
 
 
 @click.command()
@@ -88,7 +107,7 @@ def override(percent: int) -> None:
     """
     with connected() as lathe:
         lathe.override(percent)
-    click.echo(f"feed now {percent} %; back with `tornillo override 100`")
+    click.echo(_("feed now {percent} %; back with `tornillo override 100`").format(percent=percent))
 
 
 def _started(lathe: Lathe, follow: bool) -> None:
@@ -97,7 +116,7 @@ def _started(lathe: Lathe, follow: bool) -> None:
         follow_run(lathe)
         click.echo("finished")
     else:
-        click.echo("running; see `tornillo status`, hold with `tornillo hold`")
+        click.echo(_("running; see `tornillo status`, hold with `tornillo hold`"))
 
 
 @click.command()
@@ -124,7 +143,7 @@ def reset() -> None:
         status = lathe.status()
     if status.state is State.ALARM:
         raise status.alarm_error()
-    click.echo("no alarm" if status.homed else "no alarm; home next: `tornillo home`")
+    click.echo(_("no alarm") if status.homed else _("no alarm; home next: `tornillo home`"))
 
 
 @click.command()
@@ -141,7 +160,7 @@ def status(as_json: bool) -> None:
         if as_json:
             print_json(status_json(lathe, now, names))
             return
-        rows = _as_rows(lathe, now, names)
+        rows = {_(name): value for name, value in _as_rows(lathe, now, names).items()}
     width = max(len(name) for name in rows)
     for name, value in rows.items():
         click.echo(f"{name:<{width}}  {value}")
@@ -178,28 +197,32 @@ def status_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, o
 
 def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]:
     """What a person wants to know."""
-    rows = {"state": now.state.name.lower()}
+    rows = {"state": _(now.state.name.lower())}
     if now.state is State.ALARM:
-        rows["alarm"] = f"{now.alarm_error()}; {ALARM_TEXTS[now.alarm].remedy}"
+        rows["alarm"] = f"{now.alarm_error()}; {_(ALARM_TEXTS[now.alarm].remedy)}"
     if now.homed:
         diameter, z = _position_mm(lathe, now)
-        rows["tool"] = f"diameter {diameter:.3f} mm, z {z:.3f} mm"
+        rows["tool"] = _("diameter {diameter:.3f} mm, z {z:.3f} mm").format(diameter=diameter, z=z)
     else:
-        rows["tool"] = "unknown: not homed"
-    rows["machine"] = f"X {now.x}, Z {now.z} steps"
+        rows["tool"] = _("unknown: not homed")
+    rows["machine"] = _("X {x}, Z {z} steps").format(x=now.x, z=now.z)
     rows["dead steps"] = f"X {now.dead_x}, Z {now.dead_z}"
     if now.slot is not None:
-        rows["part"] = f"{names.get(now.slot, '?')} (slot {now.slot})"
+        rows["part"] = _("{slot} (slot {slot2})").format(
+            slot=names.get(now.slot, "?"), slot2=now.slot
+        )
     if now.under_way:
         rows["progress"] = f"{now.permille / 10:.1f} %, {describe(now)}"
     if now.state is State.PAUSE:
-        rows["waits for"] = f"{pause_message(lathe, now)}; go on with RUN or `tornillo resume`"
+        rows["waits for"] = _("{lathe}; go on with RUN or `tornillo resume`").format(
+            lathe=pause_message(lathe, now)
+        )
     pressed = [
         text
         for flag, text in (
-            (StatusFlag.ESTOP, "emergency stop"),
-            (StatusFlag.SWITCH_X, f"limit switch {Axis.X.name}"),
-            (StatusFlag.SWITCH_Z, f"limit switch {Axis.Z.name}"),
+            (StatusFlag.ESTOP, _("emergency stop")),
+            (StatusFlag.SWITCH_X, _("limit switch {x}").format(x=Axis.X.name)),
+            (StatusFlag.SWITCH_Z, _("limit switch {z}").format(z=Axis.Z.name)),
             (StatusFlag.BUTTON_RUN, "RUN"),
             (StatusFlag.BUTTON_HOLD, "HOLD"),
             (StatusFlag.BUTTON_STOP, "STOP"),
@@ -208,8 +231,10 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
     ]
     if pressed:
         rows["pressed"] = ", ".join(pressed)
-    rows["firmware"] = f"{lathe.firmware}, serial number {lathe.serial_number}"
-    rows["last start"] = now.reset_cause.name.lower().replace("_", "-")
+    rows["firmware"] = _("{firmware}, serial number {serial_number}").format(
+        firmware=lathe.firmware, serial_number=lathe.serial_number
+    )
+    rows["last start"] = _(now.reset_cause.name.lower().replace("_", "-"))
     return rows
 
 

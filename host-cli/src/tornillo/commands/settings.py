@@ -9,6 +9,7 @@ import click
 from tornillo.commands.completion import complete_settings
 from tornillo.commands.connection import connected, json_option, print_json, print_table
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.protocol import SETTINGS, Axis, Setting
 from tornillo.units import NM_PER_UNIT, Scale
 
@@ -43,7 +44,7 @@ def settings(context: click.Context, as_json: bool) -> None:
             "unit": entry.unit,
             "minimum": data.minimum,
             "maximum": data.maximum,
-            "meaning": entry.meaning,
+            "meaning": _(entry.meaning),
         }
         for entry, data in found
     ]
@@ -80,12 +81,23 @@ def set_setting(name: str, value: int) -> None:
         now = lathe.setting(entry.id)
         if not now.minimum <= value <= now.maximum:
             raise TornilloError(
-                f"{name} cannot be {value}: it goes from {now.minimum} to {now.maximum} "
-                f"{entry.unit}".rstrip(),
-                f"choose a value in this range; now it is {now.value}",
+                _("{name} cannot be {value}: it goes from {minimum} to {maximum} {unit}")
+                .format(
+                    name=name,
+                    value=value,
+                    minimum=now.minimum,
+                    maximum=now.maximum,
+                    unit=entry.unit,
+                )
+                .rstrip(),
+                _("choose a value in this range; now it is {now}").format(now=now.value),
             )
         lathe.set_setting(entry.id, value)
-    click.echo(f"{name} was {now.value}, is {value} {entry.unit}".rstrip())
+    click.echo(
+        _("{name} was {now}, is {value} {unit}")
+        .format(name=name, now=now.value, value=value, unit=entry.unit)
+        .rstrip()
+    )
 
 
 def _named(name: str) -> Setting:
@@ -93,8 +105,12 @@ def _named(name: str) -> Setting:
     known = {entry.id.name.lower(): entry for entry in SETTINGS}
     if name.lower() not in known:
         close = difflib.get_close_matches(name.lower(), known, n=1)
-        remedy = f'did you mean "{close[0]}"?' if close else "see `tornillo settings`"
-        raise TornilloError(f'there is no setting "{name}"', remedy)
+        remedy = (
+            _('did you mean "{close}"?').format(close=close[0])
+            if close
+            else _("see `tornillo settings`")
+        )
+        raise TornilloError(_('there is no setting "{name}"').format(name=name), remedy)
     return known[name.lower()]
 
 
@@ -113,7 +129,7 @@ def zero() -> None:
 def _finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
     """Refuse nan and inf."""
     if not math.isfinite(value):
-        raise click.BadParameter("must be an ordinary number")
+        raise click.BadParameter(_("must be an ordinary number"))
     return value
 
 
@@ -135,7 +151,7 @@ def zero_x(diameter: float, units: str) -> None:
     with connected() as lathe:
         scale = Scale(units, lathe.machine())
         lathe.zero(Axis.X, scale.radius_steps(diameter))
-    click.echo(f"X: the tool stands at diameter {scale.show(diameter)}")
+    click.echo(_("X: the tool stands at diameter {diameter}").format(diameter=scale.show(diameter)))
 
 
 @zero.command("z")
@@ -150,7 +166,7 @@ def zero_z(at: float, units: str) -> None:
     with connected() as lathe:
         scale = Scale(units, lathe.machine())
         lathe.zero(Axis.Z, scale.z_steps(at))
-    click.echo(f"Z: the tool stands at z = {scale.show(at)}")
+    click.echo(_("Z: the tool stands at z = {at}").format(at=scale.show(at)))
 
 
 VERBS = (settings, zero)

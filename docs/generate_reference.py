@@ -26,15 +26,47 @@ def pins() -> str:
     return "\n".join(rows) + "\n"
 
 
+def alarms() -> str:
+    """All alarms in Spanish."""
+    from tornillo.language import use
+    from tornillo.protocol_texts import ALARM_TEXTS
+
+    say = use("es").gettext
+    rows = ["| código | nombre | causa | qué hacer |", "|---|---|---|---|"]
+    for alarm, text in ALARM_TEXTS.items():
+        rows.append(f"| {alarm.value} | `{alarm.name}` | {say(text.cause)} | {say(text.remedy)} |")
+    use("en")
+    return "\n".join(rows) + "\n"
+
+
+def settings() -> str:
+    """All settings in Spanish."""
+    from tornillo.language import use
+    from tornillo.protocol import SETTINGS
+
+    say = use("es").gettext
+    rows = ["| nombre | de fábrica | intervalo | unidad | significado |", "|---|---|---|---|---|"]
+    for entry in SETTINGS:
+        limits = f"{entry.minimum} a {entry.maximum}"
+        name = entry.id.name.lower()
+        rows.append(
+            f"| `{name}` | {entry.default} | {limits} | {entry.unit} | {say(entry.meaning)} |"
+        )
+    use("en")
+    return "\n".join(rows) + "\n"
+
+
 def pages() -> dict[str, str]:
     """Every page with its generated text, by its file name."""
     from cli_pages import page
     from part_keys import table_text
 
-    found = {"cli.md": page()}
+    found = {"cli.md": page("en"), "es/comandos.md": page("es")}
     for name, mark, text in (
         ("wiring.md", "pins", pins()),
         ("part-file.md", "keys", table_text()),
+        ("es/alarmas.md", "alarms", alarms()),
+        ("es/ajustes.md", "settings", settings()),
     ):
         old = (DOCS / name).read_text(encoding="utf-8")
         place = re.search(MARKER.format(name=mark), old, re.DOTALL)

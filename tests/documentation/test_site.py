@@ -8,12 +8,17 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from click.testing import CliRunner
 from part_keys import Noting, asked, sections
 from site_hooks import on_page_markdown
+from tornillo.cli import main as tornillo
 from tornillo.cutting import read_cut
+from tornillo.language import use
 
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
+STORED = "{part} is stored in slot {slot}, {image} bytes, verified"
+HOMED = "homed; dead steps: X {dead_x}, Z {dead_z}"
 PAGES = sorted(DOCS.rglob("*.md"))
 
 
@@ -40,11 +45,8 @@ def test_the_site_builds_without_a_warning_and_has_every_page(tmp_path: Path) ->
 
 def test_the_menu_of_the_site_has_every_page() -> None:
     menu = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
-    spanish = [page for page in PAGES if "es" in page.relative_to(DOCS).parts]
     missing = [
-        str(page.relative_to(DOCS))
-        for page in PAGES
-        if page not in spanish and str(page.relative_to(DOCS)) not in menu
+        str(page.relative_to(DOCS)) for page in PAGES if str(page.relative_to(DOCS)) not in menu
     ]
     assert missing == []
 
@@ -55,6 +57,48 @@ def test_what_is_generated_is_fresh(script: str) -> None:
         [sys.executable, str(DOCS / script), "--check"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stdout
+
+
+def test_the_spanish_guide_has_the_commands_of_the_english_one() -> None:
+    def commands(page: str) -> list[str]:
+        text = (DOCS / page).read_text(encoding="utf-8")
+        return re.findall(r"^\$ (.*)$", text, re.MULTILINE)
+
+    typed = commands("first-cut.md")
+    assert len(typed) > 10
+    assert commands("es/primer-corte.md") == typed
+
+
+def test_what_the_spanish_guide_says_is_printed_is_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    text = (DOCS / "es" / "primer-corte.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"```console\n(.*?)```", text, re.DOTALL)
+    commands = [line for line in blocks[0].splitlines() if line.startswith("$ tornillo ")]
+    done = "".join(
+        CliRunner(env={"TORNILLO_LANG": "es"})
+        .invoke(
+            tornillo, line.removeprefix("$ tornillo ").replace("build/", f"{tmp_path}/").split()
+        )
+        .output.replace(f"{tmp_path}/", "build/")
+        for line in commands
+    )
+    printed = [line for line in blocks[0].splitlines() if not line.startswith("$ ")]
+    assert len(printed) == 3
+    assert [line for line in printed if line not in done] == []
+    say = use("es").gettext
+    later = "".join(blocks[1:])
+    for message in (
+        "held; go on with `tornillo resume`, give up with `tornillo stop`",
+        "running; see `tornillo status`, hold with `tornillo hold`",
+        "stopped",
+        "finished",
+    ):
+        assert f"\n{say(message)}\n" in later
+    assert say(STORED).format(part="my-part", slot=0, image=91) in later
+    assert say(HOMED).format(dead_x=23, dead_z=31) in later
+    use("en")
 
 
 def test_every_picture_is_made_by_a_tool() -> None:

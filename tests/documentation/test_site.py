@@ -75,15 +75,11 @@ def test_what_the_spanish_guide_says_is_printed_is_printed(
     monkeypatch.chdir(ROOT)
     text = (DOCS / "es" / "primer-corte.md").read_text(encoding="utf-8")
     blocks = re.findall(r"```console\n(.*?)```", text, re.DOTALL)
-    commands = [line for line in blocks[0].splitlines() if line.startswith("$ tornillo ")]
-    done = "".join(
-        CliRunner(env={"TORNILLO_LANG": "es"})
-        .invoke(
-            tornillo, line.removeprefix("$ tornillo ").replace("build/", f"{tmp_path}/").split()
-        )
-        .output.replace(f"{tmp_path}/", "build/")
-        for line in commands
-    )
+    done = ""
+    for line in re.findall(r"^\$ tornillo (.*)$", blocks[0], re.MULTILINE):
+        words = line.replace("build/", f"{tmp_path}/").split()
+        result = CliRunner(env={"TORNILLO_LANG": "es"}).invoke(tornillo, words)
+        done += result.output.replace(f"{tmp_path}/", "build/")
     printed = [line for line in blocks[0].splitlines() if not line.startswith("$ ")]
     assert len(printed) == 3
     assert [line for line in printed if line not in done] == []

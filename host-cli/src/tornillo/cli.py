@@ -9,7 +9,16 @@ import sys
 import click
 
 from tornillo import __version__
-from tornillo.commands import drawing, import_dxf, parts, planning, running, settings, system
+from tornillo.commands import (
+    drawing,
+    import_dxf,
+    moving,
+    parts,
+    planning,
+    running,
+    settings,
+    system,
+)
 from tornillo.errors import TornilloError
 
 
@@ -44,6 +53,6 @@ def main(context: click.Context, port: str | None) -> None:
     context.obj = port
 
 
-for module in (parts, planning, drawing, import_dxf, running, settings, system):
+for module in (parts, planning, drawing, import_dxf, running, moving, settings, system):
     for verb in module.VERBS:
         main.add_command(verb)

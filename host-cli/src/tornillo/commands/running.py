@@ -101,7 +101,7 @@ def _started(lathe: Lathe, follow: bool) -> None:
 
 @click.command()
 def stop() -> None:
-    """End the run or the homing.
+    """End the run, the homing, or whatever else moves.
 
     \b
     Example: tornillo stop
@@ -162,6 +162,7 @@ def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, obje
     values["alarm_axis"] = None if now.alarm_axis is None else now.alarm_axis.name
     values["reset_cause"] = now.reset_cause.name
     values["flags"] = [flag.name for flag in now.flags]
+    values["inputs"] = [flag.name for flag in now.inputs]
     return {
         **values,
         "homed": now.homed,
@@ -205,6 +206,8 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
         )
         if flag in now.flags
     ]
+    if now.contact:
+        pressed.append("contact sensor")
     if pressed:
         rows["pressed"] = ", ".join(pressed)
     rows["firmware"] = f"{lathe.firmware}, serial number {lathe.serial_number}"

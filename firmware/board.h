@@ -40,7 +40,7 @@ BOARD_PIN(BUTTON_HOLD, D, 5)        /* 0 = pressed */
 BOARD_PIN(BUTTON_STOP, D, 6)        /* 0 = pressed */
 BOARD_PIN(ESTOP_SENSE, D, 7)        /* 0 = motor power present */
 BOARD_PIN(KEY_LADDER, A, 0)         /* reserved, analogue */
-BOARD_PIN(PROBE, A, 1)              /* reserved, 0 = contact */
+BOARD_PIN(PROBE, A, 1)              /* 0 = contact; pulled up outside */
 BOARD_PIN(LCD_D4, A, 2)             /* reserved */
 BOARD_PIN(LCD_D5, A, 3)             /* reserved */
 BOARD_PIN(LCD_D6, A, 4)             /* reserved */

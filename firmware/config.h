@@ -26,6 +26,24 @@
 /* Shortest step pulse, us: what the step interrupt takes anyway. */
 #define PULSE_LEAST_US 5
 
+/* Longer than the input filter takes (panel/inputs.h), ms: rest after a
+   move, so that the filter has seen its last step. */
+#define FILTER_MS 6
+
+/* A jog ends when the host is not heard for so long, ms. Range 300..5000:
+   longer than the host takes to repeat a lost request, 250 ms. */
+#define DEADMAN_MS 500u
+#if DEADMAN_MS < 300 || DEADMAN_MS > 5000
+#error "DEADMAN_MS must be 300 to 5000"
+#endif
+
+/* A limit switch that closes farther than this from its end is a fault of its
+   wire, steps. Range 50..2000: more than lost steps explain. */
+#define SWITCH_NEAR_STEPS 400
+#if SWITCH_NEAR_STEPS < 50 || SWITCH_NEAR_STEPS > 2000
+#error "SWITCH_NEAR_STEPS must be 50 to 2000"
+#endif
+
 /* Fast approach gives up after the travel and this many steps more. */
 #define HOMING_MARGIN_STEPS 400
 

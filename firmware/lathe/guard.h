@@ -8,8 +8,9 @@
  * after the inputs have been filtered:
  *   emergency stop                  stream ends, coils off      guard_tripped
  *   limit switch while it is armed  stream ends, coils hold     guard_tripped
+ *   contact while it is armed       stream ends, coils hold     guard_tripped
  *   the stream ran dry in mid-move  (it has stopped itself)     guard_tripped
- *   switch that homing waits for    stream ends                 guard_stopped
+ *   switch or contact waited for    stream ends                 guard_stopped
  * The main loop finds the flag in its next turn and names the alarm.
  */
 #ifndef GUARD_H
@@ -17,7 +18,8 @@
 
 #include <stdint.h>
 
-/* What tripped: input bits (INPUT_ESTOP, INPUT_LIMIT_X, _Z), or GUARD_DRY.
+/* What tripped: input bits (INPUT_ESTOP, _LIMIT_X, _LIMIT_Z, _PROBE), or
+   GUARD_DRY.
    Stays until guard_clear(). */
 #define GUARD_DRY 0x80
 extern volatile uint8_t guard_tripped;

@@ -4,6 +4,7 @@
 #include "lathe/homing.h"
 #include "config.h"         /* margins */
 #include "lathe/guard.h"    /* stops the stream at a switch */
+#include "lathe/stroke.h"   /* moves */
 #include "link/protocol.h"  /* alarms, axes, settings */
 #include "motion/path.h"    /* moves */
 #include "motion/stream.h"  /* positions */
@@ -17,16 +18,10 @@ enum phase { PHASE_SEEK, PHASE_LEAVE, PHASE_LATCH, PHASE_COUNT, PHASE_PARK };
 
 #define REPEATS_MAX 9
 
-/* Longer than the input filter takes. */
-#define FILTER_MS 6
-
 uint8_t homing_axis;
 
 static uint8_t phase;
-static uint8_t offered; /* of the phase: its move, then a wait */
-static int16_t target;
 static int16_t start; /* position at the start of the phase */
-static int16_t rate;
 static uint16_t counts[REPEATS_MAX];
 static uint8_t repeat;
 static uint8_t others_before; /* other switches pressed at the start */
@@ -48,7 +43,7 @@ static uint8_t pressed(void)
 
 static int16_t position(void)
 {
-    return homing_axis == AXIS_X ? stream_position_x() : stream_position_z();
+    return stream_position(homing_axis);
 }
 
 /* Moves by a distance until the switch is pressed (1) or open (0). */
@@ -57,11 +52,9 @@ static void seek(uint8_t next, int16_t distance, int16_t steps_per_second,
 {
     phase = next;
     start = position();
-    target = start + distance;
-    rate = steps_per_second;
-    offered = 0;
+    stroke_rate = steps_per_second;
     guard_stop_at(own_switch(), until_pressed);
-    path_begin();
+    stroke_along(homing_axis, distance);
 }
 
 static int16_t latch_rate(void)
@@ -214,21 +207,4 @@ uint8_t homing_poll(void)
         return next_phase(0);
     }
     return 0;
-}
-
-uint8_t homing_source(void)
-{
-    if (offered == 0) {
-        path_next.kind = SEGMENT_LINE | SEGMENT_RAPID;
-        path_next.dx = homing_axis == AXIS_X ? target - start : 0;
-        path_next.dz = homing_axis == AXIS_X ? 0 : target - start;
-        path_next.mark = 0;
-        path_set_rapid(rate);
-    } else {
-        /* The filter must have seen the last step before the end counts. */
-        path_next.kind = SEGMENT_WAIT;
-        path_next.dx = FILTER_MS;
-    }
-    offered++;
-    return offered <= 2;
 }

@@ -39,9 +39,6 @@ void homing_begin(void);
    its detail. */
 uint8_t homing_poll(void);
 
-/* Describes the move of the present phase; see motion_source(). */
-uint8_t homing_source(void);
-
 /* The axis being homed, AXIS_X or AXIS_Z. */
 extern uint8_t homing_axis;
 

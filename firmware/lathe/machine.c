@@ -6,9 +6,11 @@
 #include "config.h"           /* shortest pulse */
 #include "lathe/guard.h"      /* trips */
 #include "lathe/homing.h"     /* homing phases */
+#include "lathe/manual.h"     /* jog, goto, touch */
 #include "lathe/part.h"       /* number of operations */
 #include "lathe/part_check.h" /* before every run */
 #include "lathe/passes.h"     /* moves of a part */
+#include "lathe/stroke.h"     /* moves of homing and by hand */
 #include "link/protocol.h"    /* states, alarms, errors */
 #include "motion/path.h"      /* chains */
 #include "motion/ramp.h"      /* hold */
@@ -79,18 +81,20 @@ uint8_t machine_quiet(void)
     return machine_state == STATE_IDLE || machine_state == STATE_ALARM;
 }
 
-/* Why no motion can start now, or ERROR_OK. */
-static uint8_t not_ready(void)
+uint8_t machine_not_ready(void)
 {
     if (machine_state == STATE_ALARM) {
         return ERROR_ALARM;
     }
-    return machine_state == STATE_IDLE ? ERROR_OK : ERROR_BUSY;
+    if (machine_state != STATE_IDLE) {
+        return ERROR_BUSY;
+    }
+    return ERROR_OK;
 }
 
 uint8_t machine_home(void)
 {
-    uint8_t error = not_ready();
+    uint8_t error = machine_not_ready();
 
     if (error == ERROR_OK) {
         machine_state = STATE_HOMING;
@@ -103,7 +107,7 @@ uint8_t machine_home(void)
 
 uint8_t machine_run(uint8_t slot, uint8_t step)
 {
-    uint8_t error = not_ready();
+    uint8_t error = machine_not_ready();
 
     if (error != ERROR_OK) {
         return error;
@@ -137,11 +141,12 @@ uint8_t machine_hold(void)
     if (machine_state == STATE_HOLD) {
         return ERROR_OK;
     }
-    if (machine_state != STATE_RUNNING) {
+    if (machine_state == STATE_RUNNING) {
+        machine_state = STATE_HOLD;
+    } else if (machine_state != STATE_MOVING) {
         return ERROR_NOT_RUNNING;
     }
     ramp_hold();
-    machine_state = STATE_HOLD;
     return ERROR_OK;
 }
 
@@ -172,27 +177,27 @@ uint8_t machine_override(uint8_t percent)
     if (percent < OVERRIDE_MIN || percent > OVERRIDE_MAX) {
         return ERROR_OUT_OF_RANGE;
     }
-    if (machine_quiet() || machine_state == STATE_HOMING) {
+    if (!machine_running()) {
         return ERROR_NOT_RUNNING;
     }
     ramp_set_override(percent);
     return ERROR_OK;
 }
 
+static void become_idle(void)
+{
+    machine_state = STATE_IDLE;
+    guard_stop_at(0, 0);
+    arm();
+}
+
 uint8_t machine_stop(void)
 {
-    switch (machine_state) {
-    case STATE_HOMING:
+    if (machine_state == STATE_HOMING) {
         raise(ALARM_STOPPED_HOMING, homing_axis);
-        break;
-    case STATE_RUNNING:
-    case STATE_HOLD:
-    case STATE_PAUSE:
+    } else if (!machine_quiet()) {
         path_cancel();
-        machine_state = STATE_IDLE;
-        break;
-    default:
-        break;
+        become_idle();
     }
     return ERROR_OK;
 }
@@ -228,7 +233,7 @@ uint8_t machine_zero(uint8_t axis, int16_t value)
     if (axis > AXIS_Z || value > POSITION_MAX || value < -POSITION_MAX) {
         return ERROR_OUT_OF_RANGE;
     }
-    zero = axis == AXIS_X ? stream_position_x() : stream_position_z();
+    zero = stream_position(axis);
     return settings_set(axis == AXIS_X ? SETTING_ZERO_X : SETTING_ZERO_Z,
                         zero - value);
 }
@@ -267,15 +272,25 @@ uint16_t machine_permille(void)
     return permille + proportion();
 }
 
+static void serve_limit(uint8_t axis)
+{
+    raise(machine_homed && stream_position(axis) < -SWITCH_NEAR_STEPS
+              ? ALARM_SWITCH_WIRING
+              : ALARM_LIMIT,
+          axis);
+}
+
 /* Names the alarm for what the guard has stopped. */
 static void serve_trip(void)
 {
     if (guard_tripped & INPUT_ESTOP) {
         raise(ALARM_ESTOP, 0);
     } else if (guard_tripped & INPUT_LIMIT_X) {
-        raise(ALARM_LIMIT, AXIS_X);
+        serve_limit(AXIS_X);
     } else if (guard_tripped & INPUT_LIMIT_Z) {
-        raise(ALARM_LIMIT, AXIS_Z);
+        serve_limit(AXIS_Z);
+    } else if (guard_tripped & INPUT_PROBE) {
+        raise(ALARM_PROBE_UNEXPECTED, 0);
     } else {
         raise(ALARM_STREAM_DRY, 0);
     }
@@ -315,8 +330,7 @@ static void serve_homing(void)
 
     if (result == HOMING_DONE) {
         machine_homed = 1;
-        machine_state = STATE_IDLE;
-        arm();
+        become_idle();
     } else if (result != 0) {
         raise(result, homing_axis);
     }
@@ -344,6 +358,10 @@ void machine_poll(void)
     serve_buttons();
     if (machine_state == STATE_HOMING) {
         serve_homing();
+    } else if (machine_state >= STATE_MOVING) {
+        if (manual_poll()) {
+            become_idle();
+        }
     } else if ((machine_state == STATE_RUNNING ||
                 machine_state == STATE_HOLD) &&
                !path_busy() && !guard_tripped) {
@@ -362,5 +380,5 @@ void machine_poll(void)
 
 uint8_t path_source(void)
 {
-    return machine_state == STATE_HOMING ? homing_source() : passes_source();
+    return machine_running() ? passes_source() : stroke_source();
 }

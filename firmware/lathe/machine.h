@@ -3,22 +3,27 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- *   state     RUN          HOLD    STOP           part/homing ends  trip
+ *   state     RUN          HOLD    STOP           motion ends       trip
  *   IDLE      home, or     select  -              -                 ALARM
  *             start part
  *   HOMING    -            -       ALARM          IDLE, homed       ALARM
  *   RUNNING   -            HOLD    IDLE           IDLE or PAUSE     ALARM
  *   HOLD      RUNNING      -       IDLE           -                 ALARM
  *   PAUSE     RUNNING      -       IDLE           -                 ALARM
+ *   MOVING    -            IDLE    IDLE           IDLE              ALARM
+ *   TOUCHING  -            -       IDLE           IDLE              ALARM
  *   ALARM     -            -       IDLE           -                 ALARM
  *
  * RUN and STOP are buttons; the commands HOME, RUN and RESUME are the three
- * meanings of the first, STOP and RESET those of the second. HOLD in IDLE
+ * meanings of the first, STOP and RESET those of the second; JOG and GOTO
+ * lead from IDLE to MOVING, TOUCH to TOUCHING (lathe/manual.h). HOLD in IDLE
  * selects the next part; the LED flashes its number. In PAUSE the slides are
  * parked and the part waits for a person: a message, another tool, or the end
  * of an operation when it is run step by step. A trip is the
- * emergency stop, a limit switch while homed, or a step stream that ran dry;
- * it makes the position untrusted. ALARM ends by the command RESET or the
+ * emergency stop, a limit switch while homed or MOVING, the contact sensor in
+ * a fast move, or a step stream that ran dry; it makes the position
+ * untrusted. A limit switch that closes far from its end is told as a fault
+ * of its wire (SWITCH_NEAR_STEPS). ALARM ends by the command RESET or the
  * STOP button, when its cause is gone; then IDLE, not homed. Acknowledging
  * SETTINGS_LOST stores the defaults.
  *
@@ -39,7 +44,7 @@ extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
 /* Starts in IDLE, or in ALARM when the settings were lost. */
 void machine_init(void);
 
-/* Serves trips, buttons, homing and run; every turn of the main loop. */
+/* Serves trips, buttons, and what moves; every turn of the main loop. */
 void machine_poll(void);
 
 uint8_t machine_home(void);
@@ -52,6 +57,9 @@ uint8_t machine_reset(void);
 
 /* Feed of the run under way, percent, 10..200. */
 uint8_t machine_override(uint8_t percent);
+
+/* Why no motion can start now, or ERROR_OK. */
+uint8_t machine_not_ready(void);
 
 /* True when flash and settings may be written: nothing moves or could. */
 uint8_t machine_quiet(void);

@@ -155,8 +155,8 @@ void passes_begin(uint8_t slot, uint8_t step)
 {
     slot_cut = slot;
     stepping = step;
-    at_x = stream_position_x();
-    at_z = stream_position_z();
+    at_x = stream_position(AXIS_X);
+    at_z = stream_position(AXIS_Z);
     passes_more = 1;
     contour_own = PART_IMAGE_HEADER_SIZE;
     operation = 0;

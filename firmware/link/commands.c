@@ -3,10 +3,12 @@
 
 #include "link/commands.h"
 #include "lathe/machine.h" /* state, actions */
+#include "lathe/manual.h"  /* jog, goto, touch */
 #include "lathe/part.h"
 #include "lathe/part_check.h" /* upload, max rate */
 #include "lathe/passes.h"     /* progress */
 #include "link/frame.h"       /* request, response */
+#include "link/lengths.h"     /* of requests */
 #include "link/protocol.h"    /* numbers */
 #include "motion/path.h"      /* dead steps */
 #include "motion/ramp.h"      /* hold, override */
@@ -19,33 +21,6 @@
 #include "tick.h"             /* uptime */
 
 uint8_t commands_reset_cause;
-
-/* Shortest and longest payload of each command; 0 ends the table. */
-/* clang-format off */
-static __code const uint8_t lengths[] = {
-    COMMAND_HELLO, HELLO_REQUEST_SIZE, HELLO_REQUEST_SIZE,
-    COMMAND_STATUS, STATUS_REQUEST_SIZE, STATUS_REQUEST_SIZE,
-    COMMAND_HOME, HOME_REQUEST_SIZE, HOME_REQUEST_SIZE,
-    COMMAND_RUN, RUN_REQUEST_SIZE, RUN_REQUEST_SIZE,
-    COMMAND_HOLD, HOLD_REQUEST_SIZE, HOLD_REQUEST_SIZE,
-    COMMAND_RESUME, RESUME_REQUEST_SIZE, RESUME_REQUEST_SIZE,
-    COMMAND_STOP, STOP_REQUEST_SIZE, STOP_REQUEST_SIZE,
-    COMMAND_RESET, RESET_REQUEST_SIZE, RESET_REQUEST_SIZE,
-    COMMAND_ZERO, ZERO_REQUEST_SIZE, ZERO_REQUEST_SIZE,
-    COMMAND_OVERRIDE, OVERRIDE_REQUEST_SIZE, OVERRIDE_REQUEST_SIZE,
-    COMMAND_UPLOAD_BEGIN, UPLOAD_BEGIN_REQUEST_SIZE, UPLOAD_BEGIN_REQUEST_SIZE,
-    COMMAND_UPLOAD_DATA, UPLOAD_DATA_REQUEST_MIN, UPLOAD_DATA_REQUEST_MAX,
-    COMMAND_UPLOAD_COMMIT, UPLOAD_COMMIT_REQUEST_SIZE,
-    UPLOAD_COMMIT_REQUEST_SIZE,
-    COMMAND_PART_INFO, PART_INFO_REQUEST_SIZE, PART_INFO_REQUEST_SIZE,
-    COMMAND_PART_READ, PART_READ_REQUEST_SIZE, PART_READ_REQUEST_SIZE,
-    COMMAND_PART_SELECT, PART_SELECT_REQUEST_SIZE, PART_SELECT_REQUEST_SIZE,
-    COMMAND_PART_DELETE, PART_DELETE_REQUEST_SIZE, PART_DELETE_REQUEST_SIZE,
-    COMMAND_SETTING_GET, SETTING_GET_REQUEST_SIZE, SETTING_GET_REQUEST_SIZE,
-    COMMAND_SETTING_SET, SETTING_SET_REQUEST_SIZE, SETTING_SET_REQUEST_SIZE,
-    COMMAND_SERIAL_SET, SERIAL_SET_REQUEST_SIZE, SERIAL_SET_REQUEST_SIZE,
-    0};
-/* clang-format on */
 
 static void put_u16(uint8_t at, uint16_t value)
 {
@@ -151,8 +126,8 @@ static uint8_t status(void)
     frame_response[STATUS_RESPONSE_ALARM_AT] = machine_alarm;
     frame_response[STATUS_RESPONSE_ALARM_DETAIL_AT] = machine_alarm_detail;
     frame_response[STATUS_RESPONSE_FLAGS_AT] = status_flags();
-    put_i32(STATUS_RESPONSE_X_AT, stream_position_x());
-    put_i32(STATUS_RESPONSE_Z_AT, stream_position_z());
+    put_i32(STATUS_RESPONSE_X_AT, stream_position(AXIS_X));
+    put_i32(STATUS_RESPONSE_Z_AT, stream_position(AXIS_Z));
     put_u16(STATUS_RESPONSE_DEAD_X_AT, motion_dead_x);
     put_u16(STATUS_RESPONSE_DEAD_Z_AT, motion_dead_z);
     frame_response[STATUS_RESPONSE_SLOT_AT] =
@@ -169,6 +144,7 @@ static uint8_t status(void)
     put_u16(STATUS_RESPONSE_BAD_FRAMES_AT, frame_bad_frames);
     put_uptime();
     frame_response[STATUS_RESPONSE_STREAM_LOW_AT] = stream_low;
+    frame_response[STATUS_RESPONSE_INPUTS_AT] = inputs_state | manual_contact;
     return STATUS_RESPONSE_SIZE;
 }
 
@@ -314,24 +290,12 @@ static uint8_t change_store(void)
     }
 }
 
-static uint8_t length_fits(void)
-{
-    uint8_t i;
-
-    for (i = 0; lengths[i] != 0; i += 3) {
-        if (lengths[i] == frame_code) {
-            return frame_length >= lengths[i + 1] &&
-                   frame_length <= lengths[i + 2];
-        }
-    }
-    return 1; /* unknown commands are answered as such */
-}
-
 uint8_t commands_execute(void)
 {
     uint8_t error;
 
-    if (!length_fits()) {
+    manual_heard();
+    if (!lengths_fit()) {
         frame_response[0] = ERROR_BAD_LENGTH;
         return 1;
     }
@@ -353,6 +317,12 @@ uint8_t commands_execute(void)
         return part_read();
     case COMMAND_SETTING_GET:
         return setting_get();
+    case COMMAND_JOG:
+    case COMMAND_GOTO:
+    case COMMAND_TOUCH:
+        error = manual_begin(frame_code, get_i16(JOG_X_AT), get_i16(JOG_Z_AT),
+                             get_u16(JOG_RATE_AT));
+        break;
     case COMMAND_HOME:
         error = machine_home();
         break;

@@ -6,7 +6,7 @@
 #ifndef LINK_PROTOCOL_H
 #define LINK_PROTOCOL_H
 
-#define PROTOCOL_VERSION                    2
+#define PROTOCOL_VERSION                    3
 #define FIRMWARE_VERSION_MAJOR              0
 #define FIRMWARE_VERSION_MINOR              1
 #define FIRMWARE_VERSION_PATCH              0
@@ -87,6 +87,8 @@
 #define STATE_HOLD                          3
 #define STATE_ALARM                         4
 #define STATE_PAUSE                         5
+#define STATE_MOVING                        6
+#define STATE_TOUCHING                      7
 
 /* Bits of the flags in STATUS. */
 #define STATUS_FLAG_HOMED                   0x01
@@ -111,6 +113,12 @@
 #define ALARM_DEAD_STEPS_SPREAD             9
 #define ALARM_INTERNAL                      10
 #define ALARM_PATH                          11
+#define ALARM_SWITCH_WIRING                 14
+#define ALARM_PROBE_UNEXPECTED              15
+
+/* Bits of the inputs in STATUS. */
+#define STATUS_INPUT_CONTACT                64
+#define STATUS_INPUT_TOUCHED                128
 
 /* Why the chip last started. */
 #define RESET_CAUSE_POWER_ON                1
@@ -137,6 +145,9 @@
 #define ERROR_STORE_FULL                    13
 #define ERROR_FLASH_FAILED                  14
 #define ERROR_ESTOP                         15
+#define ERROR_PROBE_CLOSED                  16
+#define ERROR_NOT_FITTED                    17
+#define ERROR_WRONG_WAY                     19
 
 /* Commands. _REQUEST_SIZE: payload bytes; _RESPONSE_SIZE: payload bytes
  * with the error byte; an open payload has _MIN and _MAX. _AT: offset in
@@ -162,7 +173,7 @@
 /* Where is the tool, what is the machine doing? */
 #define COMMAND_STATUS                      0x02
 #define STATUS_REQUEST_SIZE                 0
-#define STATUS_RESPONSE_SIZE                32
+#define STATUS_RESPONSE_SIZE                33
 #define STATUS_RESPONSE_STATE_AT            1
 #define STATUS_RESPONSE_ALARM_AT            2
 #define STATUS_RESPONSE_ALARM_DETAIL_AT     3
@@ -181,6 +192,7 @@
 #define STATUS_RESPONSE_BAD_FRAMES_AT       25
 #define STATUS_RESPONSE_UPTIME_MS_AT        27
 #define STATUS_RESPONSE_STREAM_LOW_AT       31
+#define STATUS_RESPONSE_INPUTS_AT           32
 /* Find the limit switches, X first, and measure the dead steps. Answered at
  * once; STATUS tells the end. */
 #define COMMAND_HOME                        0x03
@@ -193,7 +205,8 @@
 #define RUN_RESPONSE_SIZE                   1
 #define RUN_SLOT_AT                         0
 #define RUN_STEP_AT                         1
-/* Stop the run so that it can go on. OK too when it is already held. */
+/* Stop the run so that it can go on. OK too when it is already held. A jog
+ * or a way to a place brakes and is over. */
 #define COMMAND_HOLD                        0x05
 #define HOLD_REQUEST_SIZE                   0
 #define HOLD_RESPONSE_SIZE                  1
@@ -201,8 +214,8 @@
 #define COMMAND_RESUME                      0x06
 #define RESUME_REQUEST_SIZE                 0
 #define RESUME_RESPONSE_SIZE                1
-/* End the run or the homing. The position stays trusted, except while
- * homing (alarm STOPPED_HOMING). */
+/* End the run, the homing, a jog, a way or a touch. The position stays
+ * trusted, except while homing (alarm STOPPED_HOMING). */
 #define COMMAND_STOP                        0x07
 #define STOP_REQUEST_SIZE                   0
 #define STOP_RESPONSE_SIZE                  1
@@ -222,6 +235,35 @@
 #define OVERRIDE_REQUEST_SIZE               1
 #define OVERRIDE_RESPONSE_SIZE              1
 #define OVERRIDE_PERCENT_AT                 0
+/* Move to a place, homed or not, one axis after the other as GOTO does. It
+ * brakes to a stop as HOLD does, and is over, when no request of any kind
+ * comes for 500 ms. Not homed: x and z count from wherever the tool was
+ * when the chip started, there are no soft limits, and it moves at
+ * home_rate at most. OUT_OF_RANGE: homed, and not inside the travel.
+ * WRONG_WAY: towards a limit switch that is pressed. */
+#define COMMAND_JOG                         0x0B
+#define JOG_REQUEST_SIZE                    10
+#define JOG_RESPONSE_SIZE                   1
+#define JOG_X_AT                            0
+#define JOG_Z_AT                            4
+#define JOG_RATE_AT                         8
+/* Move to a place: X first when it moves away from the spindle's axis, else
+ * Z first. OUT_OF_RANGE: not inside the travel. */
+#define COMMAND_GOTO                        0x0C
+#define GOTO_REQUEST_SIZE                   10
+#define GOTO_RESPONSE_SIZE                  1
+#define GOTO_X_AT                           0
+#define GOTO_Z_AT                           4
+#define GOTO_RATE_AT                        8
+/* Move as GOTO does, at latch_rate, until the contact sensor closes: then
+ * the tool stands on the step that closed it, and STATUS tells where, with
+ * TOUCHED. Like JOG it ends when no request comes for 500 ms. OUT_OF_RANGE:
+ * not inside the travel. */
+#define COMMAND_TOUCH                       0x0D
+#define TOUCH_REQUEST_SIZE                  8
+#define TOUCH_RESPONSE_SIZE                 1
+#define TOUCH_X_AT                          0
+#define TOUCH_Z_AT                          4
 /* Start to receive a part image; an upload under way is forgotten.
  * OUT_OF_RANGE: length is not 32 to 1984. */
 #define COMMAND_UPLOAD_BEGIN                0x10
@@ -467,7 +509,9 @@
 #define SETTING_PULSE_US                    25
 #define SETTING_SPINDLE_MIN                 26
 #define SETTING_SPINDLE_MAX                 27
-#define SETTING_COUNT                       28
+#define SETTING_PROBE_FITTED                28
+#define SETTING_TOUCH_BACK_OFF              29
+#define SETTING_COUNT                       30
 
 /* SETTINGS(X): X(id, name, default, min, max) for each, in order of id. */
 #define SETTINGS(X)                                                          \
@@ -498,6 +542,8 @@
     X(24, IDLE_MS, (-1), (-1), 32000)                                        \
     X(25, PULSE_US, 5, 5, 60)                                                \
     X(26, SPINDLE_MIN, 100, 0, 32000)                                        \
-    X(27, SPINDLE_MAX, 3800, 1, 32000)
+    X(27, SPINDLE_MAX, 3800, 1, 32000)                                       \
+    X(28, PROBE_FITTED, 0, 0, 1)                                             \
+    X(29, TOUCH_BACK_OFF, 50, 1, 1000)
 
 #endif

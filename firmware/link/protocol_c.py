@@ -163,6 +163,7 @@ def header(model: Model) -> str:
         *enum(model, "state", "STATE", "States in STATUS."),
         *enum(model, "status_flag", "STATUS_FLAG", "Bits of the flags in STATUS."),
         *enum(model, "alarm", "ALARM", "Alarms in STATUS."),
+        *enum(model, "input", "STATUS_INPUT", "Bits of the inputs in STATUS."),
         *enum(model, "reset_cause", "RESET_CAUSE", "Why the chip last started."),
         *enum(model, "error", "ERROR", "First payload byte of every response."),
         *commands(model),

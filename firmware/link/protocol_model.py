@@ -8,7 +8,7 @@ from typing import Any
 
 SIZES = {"u8": 1, "i16": 2, "u16": 2, "u32": 4, "i32": 4}
 STRUCT_CODES = {"u8": "B", "i16": "h", "u16": "H", "u32": "I", "i32": "i"}
-ENUMS = ("axis", "status_flag", "state", "reset_cause", "error", "alarm", "refusal")
+ENUMS = ("axis", "status_flag", "state", "input", "reset_cause", "error", "alarm", "refusal")
 RECORD_HEAD = 4  # type u8, kind u8, size u16
 RECORD_HEAD_CODE = "BBH"
 NOTICE = "Generated from protocol.toml by generate_protocol.py: do not edit."

@@ -51,11 +51,11 @@ def explained(model: Model, name: str, *columns: str) -> str:
     return table(("code", "name", *columns), rows)
 
 
-def flags(model: Model) -> str:
-    """The bits of the status flags."""
+def bits(model: Model, name: str) -> str:
+    """A table of bits."""
     rows = [
         (f"0x{entry['value']:02X}", f"`{key.upper()}`", entry["meaning"])
-        for key, entry in model.raw["status_flag"].items()
+        for key, entry in model.raw[name].items()
     ]
     return table(("bit", "name", "meaning"), rows)
 
@@ -112,8 +112,9 @@ def fill(model: Model, page: str) -> str:
         "commands": commands(model),
         "errors": explained(model, "error", "cause", "remedy"),
         "states": explained(model, "state", "meaning"),
-        "flags": flags(model),
+        "flags": bits(model, "status_flag"),
         "alarms": explained(model, "alarm", "cause", "remedy"),
+        "inputs": bits(model, "input"),
         "resets": explained(model, "reset_cause", "meaning"),
         "refusals": f"{rule_order(model)}\n\n{explained(model, 'refusal', 'rule', 'remedy')}",
         "image": image(model),

@@ -11,6 +11,7 @@ CLASSES = {
     "state": ("State", "IntEnum", "What the machine is doing."),
     "status_flag": ("StatusFlag", "IntFlag", "Bits of the flags in STATUS."),
     "alarm": ("Alarm", "IntEnum", "Why the machine stopped."),
+    "input": ("StatusInput", "IntFlag", "Bits of the inputs in STATUS."),
     "reset_cause": ("ResetCause", "IntEnum", "Why the chip last started."),
     "error": ("ErrorCode", "IntEnum", "First payload byte of every response."),
     "refusal": ("Refusal", "IntEnum", "Why a part is refused."),

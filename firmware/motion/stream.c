@@ -2,7 +2,8 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "stream.h"
-#include "sfr.h" /* CCP2, Timer 1, ports */
+#include "link/protocol.h" /* axes */
+#include "sfr.h"           /* CCP2, Timer 1, ports */
 
 #define CCP2IE_MASK 0x01 /* PIE2 */
 #define CCP2IF_MASK 0x01 /* PIR2 */
@@ -168,26 +169,16 @@ void stream_abort(void)
 
 /* The interrupt may change a position between two of its bytes, but not
    twice in the few cycles between two readings: equal readings are true. */
-int16_t stream_position_x(void)
+int16_t stream_position(uint8_t axis)
 {
+    __data const volatile int16_t *position =
+        axis == AXIS_X ? &position_x : &position_z;
     int16_t first;
-    int16_t second = position_x;
+    int16_t second = *position;
 
     do {
         first = second;
-        second = position_x;
-    } while (first != second);
-    return first;
-}
-
-int16_t stream_position_z(void)
-{
-    int16_t first;
-    int16_t second = position_z;
-
-    do {
-        first = second;
-        second = position_z;
+        second = *position;
     } while (first != second);
     return first;
 }

@@ -99,8 +99,8 @@ void stream_thaw(void);
 /* Stops at once and forgets everything queued (any). */
 void stream_abort(void);
 
-/* Copies a tool position without stopping the interrupt. */
-int16_t stream_position_x(void);
-int16_t stream_position_z(void);
+/* Copies the tool position of an axis, AXIS_X or AXIS_Z, without stopping the
+   interrupt. */
+int16_t stream_position(uint8_t axis);
 
 #endif

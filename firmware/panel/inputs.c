@@ -2,8 +2,10 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "panel/inputs.h"
-#include "board.h" /* masks */
-#include "sfr.h"   /* ports */
+#include "board.h"          /* masks */
+#include "link/protocol.h"  /* settings */
+#include "sfr.h"            /* ports */
+#include "store/settings.h" /* probe fitted */
 
 volatile uint8_t inputs_state;
 
@@ -34,6 +36,9 @@ static uint8_t raw_levels(void)
     }
     if (!(d & BUTTON_STOP_MASK)) {
         raw |= INPUT_STOP;
+    }
+    if (settings[SETTING_PROBE_FITTED] && !(PORTA & PROBE_MASK)) {
+        raw |= INPUT_PROBE;
     }
     return raw;
 }

@@ -1,5 +1,5 @@
 /*
- * Switches and buttons: filtered, one bit each, 1 = active.
+ * Switches, buttons, contact sensor: filtered, one bit each, 1 = active.
  *
  * SPDX-License-Identifier: Apache-2.0
  *
@@ -20,6 +20,7 @@
 #define INPUT_RUN 0x08
 #define INPUT_HOLD 0x10
 #define INPUT_STOP 0x20
+#define INPUT_PROBE 0x40 /* contact; 0 where no sensor is fitted */
 #define INPUT_LIMITS (INPUT_LIMIT_X | INPUT_LIMIT_Z)
 
 /* Filtered state. */

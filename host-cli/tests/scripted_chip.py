@@ -61,6 +61,7 @@ IDLE = StatusData(
     bad_frames=0,
     uptime_ms=1000,
     stream_low=4,
+    inputs=0,
 )
 
 

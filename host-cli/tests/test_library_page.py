@@ -3,15 +3,17 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+from moving_chip import MovingChip
 from scripted_chip import IDLE, ScriptedChip, ScriptedPort
 
 from tornillo.errors import PortError
 from tornillo.link import REQUEST_S
 from tornillo.opening import PATIENCE_S
 from tornillo.ports import port_name
-from tornillo.protocol import Command, State
+from tornillo.protocol import Axis, Command, State
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
@@ -33,7 +35,7 @@ def run(name: str) -> None:
 
 
 def test_every_example_of_the_page_is_run_by_a_test() -> None:
-    assert sorted(EXAMPLES) == ["cut", "errors"]
+    assert sorted(EXAMPLES) == ["cut", "errors", "move"]
     assert PAGE.count("```python") == len(EXAMPLES)
 
 
@@ -60,6 +62,19 @@ def test_the_example_cuts_a_part(
         Command.RUN,
     ]
     assert port.closed
+
+
+def test_the_example_moves_and_touches(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    chip = MovingChip()
+    chip.surfaces = [-1789, -1790, -1789]
+    port = ScriptedPort(chip)
+    monkeypatch.setattr("tornillo.link.time", SimpleNamespace(monotonic=lambda: port.now))
+    monkeypatch.setattr("tornillo.lathe.open_port", lambda *_arguments: port)
+    run("move")
+    assert capsys.readouterr().out == "-1600\ntouched at -1789, 1 steps apart\n"
+    assert chip.zeroed == [(Axis.X, 1786 + 189)]
 
 
 def test_the_example_tells_every_kind_of_error(

@@ -18,6 +18,7 @@ from tornillo.link import READ_SLICE_S, REQUEST_S, Link
 from tornillo.protocol import (
     FRAME_TIMEOUT_MS,
     FRAME_TRIES,
+    RESPONSES,
     Command,
     ErrorCode,
     Refusal,
@@ -203,7 +204,7 @@ def test_an_empty_answer_is_refused(lathe: Lathe, chip: ScriptedChip) -> None:
 
 def test_an_answer_of_the_wrong_length_is_refused(lathe: Lathe, chip: ScriptedChip) -> None:
     chip.refusals[Command.STATUS] = b"\0abc"
-    with pytest.raises(LinkError, match="has 3 bytes, not 31"):
+    with pytest.raises(LinkError, match=f"has 3 bytes, not {RESPONSES[Command.STATUS].size}"):
         lathe.status()
 
 

@@ -50,7 +50,9 @@ def test_the_versions_are_told_from_the_first_four_bytes_whatever_follows(
     opened: Open, chip: ScriptedChip
 ) -> None:
     chip.refusals[Command.HELLO] = bytes([0, PROTOCOL_VERSION + 3, 2, 0, 1]) + b"?" * 50
-    with pytest.raises(VersionError, match=r"the firmware 2\.0\.1 speaks protocol 5, newer"):
+    with pytest.raises(
+        VersionError, match=rf"the firmware 2\.0\.1 speaks protocol {PROTOCOL_VERSION + 3}, newer"
+    ):
         opened()
 
 

@@ -12,6 +12,7 @@ from measure import BenchError, Figures, command_line, cut_test_bar, sizes
 from motion_figures import motion_figures
 from page import fill
 from shape_figures import shape_figures
+from stop_figures import stop_figures
 
 ROOT = Path(__file__).resolve().parents[2]
 OUT = ROOT / "build" / "bench" / "bench.json"
@@ -21,7 +22,7 @@ PAGE = ROOT / "docs" / "benchmarks.md"
 def figures() -> Figures:
     """Everything that is measured, with the date and the computer."""
     # These run in copies of this process, which must not have a chip of its own yet.
-    link, shapes = link_figures(), shape_figures()
+    link, shapes, stops = link_figures(), shape_figures(), stop_figures()
     bar = cut_test_bar()
     motion = motion_figures()
     worst = max(bar["isr_worst_cycles"], motion["isr_worst_cycles"])
@@ -32,6 +33,7 @@ def figures() -> Figures:
         **command_line(),
         **bar,
         **link,
+        **stops,
         **motion,
         **shapes,
         "isr_worst_cycles": worst,

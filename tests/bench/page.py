@@ -6,6 +6,7 @@ import re
 from measure import Figures
 from motion_page import motion_rows
 from shape_page import shape_rows
+from stop_figures import stop_rows
 from tornillo import __version__
 
 MARKER = re.compile(r"(<!-- bench -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -75,6 +76,7 @@ def rows(found: Figures) -> list[Row]:
             )
             for entry in found["dimensions"]
         ),
+        *stop_rows(found),
         *motion_rows(found),
         *shape_rows(found),
         ("* `sim_realtime_factor`, cutting", f"{found['sim_realtime_factor']:.1f}", ""),

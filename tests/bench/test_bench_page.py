@@ -25,6 +25,9 @@ FOUND = {
     "stream_low_entries": 80,
     "isr_worst_cycles": 96,
     "low_isr_worst_cycles": 420,
+    "estop_latency_us": 7.5,
+    "estop_total_us": 4012,
+    "estop_trials": 120,
     **MOTION,
     "shapes": {
         "pawn": {
@@ -60,5 +63,7 @@ def test_figures_stand_beside_those_of_the_peer_with_their_units() -> None:
     assert "| upload of 30 operations, 296 bytes, and reading them back | 0.51 s |" in page
     assert "| 37.20 s, 39.10 s | 39.46 s |" in page
     assert "| test bar, diameter | 15.234 mm, error -1 steps |  |" in page
+    assert "filtered edge to the last step, worst of 120 | 7.5 us |" in page
+    assert "| the same from the edge at the pin, filter included | 4.0 ms |" in page
     assert "| pawn: 360 s, planned 360 s, length of cut by feed 215 s |" in page
     assert "gouge 0.49 steps, left 0.40, crashes 0 | S1: 227 s, largest error 0.10 mm |" in page

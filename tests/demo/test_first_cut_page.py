@@ -114,7 +114,7 @@ def reader(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Reader:
 
 def test_a_newcomer_who_types_the_first_cut_page_gets_a_part(reader: Reader) -> None:
     page = list(blocks())
-    assert [block.kind for block in page] == ["run", "my-part", "lathe", "run", "run", "run", "run"]
+    assert [block.kind for block in page] == ["run", "my-part", "lathe", *["run"] * 5]
     reader.run(page[0])
 
     reader.edit_part("diameter = 0.600", page[1].argument)

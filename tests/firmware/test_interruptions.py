@@ -241,7 +241,7 @@ def test_a_limit_switch_while_homed_is_an_alarm_with_its_axis_and_the_coils_hold
     assert not bench.homed
     assert bench.position == (bench.axis(Axis.X).slide, bench.axis(Axis.Z).slide)
     assert bench.refusal(bench.host.home) is ErrorCode.ALARM
-    # No jogging away: the alarm can be acknowledged with the switch still pressed.
+    # The way out, besides homing: test_limits.py.
     bench.host.reset()
     assert bench.state is State.IDLE
     bench.lathe.machine.break_switch_wire(AxisName(axis), broken=False)

@@ -23,8 +23,10 @@ OK, BUSY, NOT_HOMED, IN_ALARM, NOT_RUNNING = (
     ErrorCode.ALARM,
     ErrorCode.NOT_RUNNING,
 )
-IDLE, HOMING, RUNNING, HOLD, ALARM, PAUSE = State
+IDLE, HOMING, RUNNING, HOLD, ALARM, PAUSE, MOVING, TOUCHING = State
 NONE = Alarm.NONE
+#: Slower than the start rate: brakes from one step to the next.
+SLOW = 200
 
 # event -> what it does in the state; "button" events have no error code, so OK.
 TABLE: dict[str, dict[str, Outcome]] = {
@@ -38,6 +40,9 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (NOT_RUNNING, IDLE, NONE),
         "stop": (OK, IDLE, NONE),
         "reset": (OK, IDLE, NONE),
+        "jog": (OK, MOVING, NONE),
+        "goto": (OK, MOVING, NONE),
+        "touch": (OK, TOUCHING, NONE),
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, ALARM, Alarm.LIMIT),
     },
@@ -51,6 +56,9 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (NOT_RUNNING, IDLE, NONE),
         "stop": (OK, IDLE, NONE),
         "reset": (OK, IDLE, NONE),
+        "jog": (OK, MOVING, NONE),
+        "goto": (NOT_HOMED, IDLE, NONE),
+        "touch": (NOT_HOMED, IDLE, NONE),
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, IDLE, NONE),
     },
@@ -64,6 +72,9 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (NOT_RUNNING, HOMING, NONE),
         "stop": (OK, ALARM, Alarm.STOPPED_HOMING),
         "reset": (OK, HOMING, NONE),
+        "jog": (BUSY, HOMING, NONE),
+        "goto": (BUSY, HOMING, NONE),
+        "touch": (BUSY, HOMING, NONE),
         "estop": (OK, ALARM, Alarm.ESTOP),
     },
     "running": {
@@ -76,6 +87,9 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (OK, RUNNING, NONE),
         "stop": (OK, IDLE, NONE),
         "reset": (OK, RUNNING, NONE),
+        "jog": (BUSY, RUNNING, NONE),
+        "goto": (BUSY, RUNNING, NONE),
+        "touch": (BUSY, RUNNING, NONE),
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, ALARM, Alarm.LIMIT),
     },
@@ -89,6 +103,9 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (OK, RUNNING, NONE),
         "stop": (OK, IDLE, NONE),
         "reset": (OK, HOLD, NONE),
+        "jog": (BUSY, HOLD, NONE),
+        "goto": (BUSY, HOLD, NONE),
+        "touch": (BUSY, HOLD, NONE),
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, ALARM, Alarm.LIMIT),
     },
@@ -102,6 +119,41 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (OK, RUNNING, NONE),
         "stop": (OK, IDLE, NONE),
         "reset": (OK, PAUSE, NONE),
+        "jog": (BUSY, PAUSE, NONE),
+        "goto": (BUSY, PAUSE, NONE),
+        "touch": (BUSY, PAUSE, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
+    "moving": {
+        "button run": (OK, MOVING, NONE),
+        "button hold": (OK, IDLE, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (BUSY, MOVING, NONE),
+        "run": (BUSY, MOVING, NONE),
+        "hold": (OK, IDLE, NONE),
+        "resume": (NOT_RUNNING, MOVING, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, MOVING, NONE),
+        "jog": (BUSY, MOVING, NONE),
+        "goto": (BUSY, MOVING, NONE),
+        "touch": (BUSY, MOVING, NONE),
+        "estop": (OK, ALARM, Alarm.ESTOP),
+        "limit": (OK, ALARM, Alarm.LIMIT),
+    },
+    "touching": {
+        "button run": (OK, TOUCHING, NONE),
+        "button hold": (OK, TOUCHING, NONE),
+        "button stop": (OK, IDLE, NONE),
+        "home": (BUSY, TOUCHING, NONE),
+        "run": (BUSY, TOUCHING, NONE),
+        "hold": (NOT_RUNNING, TOUCHING, NONE),
+        "resume": (NOT_RUNNING, TOUCHING, NONE),
+        "stop": (OK, IDLE, NONE),
+        "reset": (OK, TOUCHING, NONE),
+        "jog": (BUSY, TOUCHING, NONE),
+        "goto": (BUSY, TOUCHING, NONE),
+        "touch": (BUSY, TOUCHING, NONE),
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, ALARM, Alarm.LIMIT),
     },
@@ -115,6 +167,9 @@ TABLE: dict[str, dict[str, Outcome]] = {
         "resume": (NOT_RUNNING, ALARM, Alarm.LIMIT),
         "stop": (OK, ALARM, Alarm.LIMIT),
         "reset": (OK, IDLE, NONE),
+        "jog": (IN_ALARM, ALARM, Alarm.LIMIT),
+        "goto": (IN_ALARM, ALARM, Alarm.LIMIT),
+        "touch": (IN_ALARM, ALARM, Alarm.LIMIT),
         "estop": (OK, ALARM, Alarm.ESTOP),
         "limit": (OK, ALARM, Alarm.LIMIT),
     },
@@ -123,14 +178,19 @@ TABLE: dict[str, dict[str, Outcome]] = {
 
 def lathe_in(state: str) -> Bench:
     """Bring a lathe into a row of the table."""
+    bench = little_pin.lathe_with_pin(start_x=-250 if state == "homing" else -30, probe=True)
+    bench.set(probe_fitted=1)
     if state == "not homed":
-        return little_pin.lathe_with_pin()
+        return bench
     if state == "homing":
-        bench = little_pin.lathe_with_pin(start_x=-250)
         bench.host.home()
         bench.run(0.05)
         return bench
-    bench = little_pin.homed_lathe_with_pin()
+    bench.home()
+    if state == "moving":
+        bench.host.jog(Axis.X, -60, SLOW)
+    if state == "touching":
+        bench.host.touch(Axis.X, -80)
     if state == "pause":
         bench.host.upload(little_pin.image("pausing", (little_pin.pause(), *little_pin.OPERATIONS)))
         bench.host.run()
@@ -169,6 +229,9 @@ def happen(bench: Bench, event: str) -> ErrorCode:
             "resume": bench.host.resume,
             "stop": bench.host.stop,
             "reset": bench.host.reset,
+            "jog": lambda: bench.host.jog(Axis.X, -60, SLOW),
+            "goto": lambda: bench.host.goto(x=-80, rate=SLOW),
+            "touch": lambda: bench.host.touch(Axis.X, -80),
         }
         return bench.refusal(commands[kind])
     return OK

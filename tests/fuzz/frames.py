@@ -28,7 +28,7 @@ BATCH = 40
 ALIVE_EVERY = 5000
 POLL_S = 5e-4
 #: Commands that the chip is only asked for when damaged: they move it, or take long.
-NOT_BY_RIGHT = {Command.HOME}
+NOT_BY_RIGHT = {Command.HOME, Command.JOG}
 #: Of right frames with these codes most are left out, because they write flash or EEPROM.
 SLOW = {
     Command.UPLOAD_BEGIN, Command.UPLOAD_DATA, Command.UPLOAD_COMMIT, Command.PART_SELECT,

@@ -100,6 +100,8 @@ class Target:
         bench.ask(99, Command.SERIAL_SET, b"TN-00042")
         ask(Command.ZERO, 0, 0)
         ask(Command.OVERRIDE, 100)
+        ask(Command.GOTO, 0, 0, 0)
+        ask(Command.TOUCH, 0, 0)
         for command in (Command.HOLD, Command.RESUME, Command.STOP, Command.RESET, Command.STATUS):
             ask(command)
         self._uploads(ask)

@@ -80,6 +80,7 @@ def build_parser() -> argparse.ArgumentParser:
     add("--cut-rate-limit", type=float, default=900.0, metavar="STEPS/S")
     add("--switch-bounce", type=int, default=0, metavar="US")
     add("--switch-noise", type=int, default=0, metavar="HZ")
+    add("--probe", action="store_true", help="wire the contact sensor between tool and work (RA1)")
     add("--seed", type=int, default=1)
     add("--press", type=_timed, action="append", default=[], metavar="BUTTON@T")
     add("--unplug", type=float, action="append", default=[], metavar="T", help="same: unplug@T")
@@ -121,6 +122,7 @@ def options_from(arguments: argparse.Namespace) -> Options:
         part_zero_z=arguments.part_zero_z,
         pull_in=arguments.motor_limit,
         cut_rate_limit=arguments.cut_rate_limit,
+        probe=arguments.probe,
         bounce_us=arguments.switch_bounce,
         noise_hz=arguments.switch_noise,
         seed=arguments.seed,

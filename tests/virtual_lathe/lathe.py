@@ -25,6 +25,8 @@ BUTTONS = {"run": "RD4", "hold": "RD5", "stop": "RD6"}
 ESTOP_PIN = "RD7"
 PRESS_S = 0.1
 SLICE_S = 0.02
+#: With a contact sensor: as often as the firmware may look at it.
+PROBE_SLICE_S = 0.001
 STEP_NM = 7112
 # The bar when nobody says anything: 1.000 inch thick, 2.000 inch free, in steps.
 BAR_RADIUS, BAR_LENGTH = 1786, 7143
@@ -42,7 +44,8 @@ class Options:
     ``nose_radius_mm`` is that of every turning tool, else the part file says it; ``tool`` is the
     one in the holder at first, else the one the part needs first.
     ``dry_symbol`` names a variable of the firmware and ``dry_mask`` its bits that are set when the
-    step stream has run dry; an empty name checks nothing.
+    step stream has run dry; an empty name checks nothing. With ``probe`` the contact sensor is
+    wired: RA1 is low while tool and work touch; what the tool has cut counts as gone after 1 ms.
     """
 
     firmware: Path = DEFAULT_FIRMWARE
@@ -67,6 +70,7 @@ class Options:
     isr_limit: int = 0
     dry_symbol: str = ""
     dry_mask: int = 0xFF
+    probe: bool = False
     bounce_us: int = 0
     noise_hz: int = 0
     seed: int = 1
@@ -118,6 +122,8 @@ class VirtualLathe:
             self.options.cut_rate_limit,
             self.toolbox.named(self.options.tool) if self.options.tool else self.toolbox.first,
         )
+        if self.options.probe:
+            self.workpiece.connect_probe()
         self._held: list[Move] = []
         self._faults: list[Fault] = []
         self._furthest: dict[AxisName, tuple[float, float]] = {}
@@ -174,10 +180,11 @@ class VirtualLathe:
 
     def run_to(self, cycle: int) -> Stop:
         """Run to a cycle; slides cut, timed actions happen on the way."""
+        slice_s = PROBE_SLICE_S if self.options.probe else SLICE_S
         while True:
             now = self.chip.cycle
             self._run_timed(now)
-            slice_end = min(cycle, now + round(SLICE_S * CYCLES_PER_SECOND))
+            slice_end = min(cycle, now + round(slice_s * CYCLES_PER_SECOND))
             if self._timed:
                 slice_end = min(slice_end, max(now + 1, self._timed[0][0]))
             reason = self.chip.run_to(slice_end)

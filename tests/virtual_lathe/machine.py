@@ -139,6 +139,10 @@ class Machine:
         """Break or mend the wire of a limit switch: a broken one reads as pressed."""
         self._native.vl_switch_broken(int(name), int(broken), self._options[name].switch_travel)
 
+    def short_probe(self, shorted: bool = True) -> None:
+        """Connect tool and work by a chip or a chafed wire, or no longer."""
+        self._native.vl_probe_short(int(shorted))
+
     def set_motor_power(self, on: bool) -> None:
         """Switch the motor supply; without it the rotors stay where they are."""
         self._native.vl_motor_power(int(on))

@@ -37,6 +37,17 @@ class Metal:
         self.count = (last_z - first_z) * PER_STEP + 1
         self.set_tool(tool)
 
+    def connect_probe(self, zero_x: float, zero_z: float) -> None:
+        """Put the contact sensor between the bar and the tool.
+
+        ``zero_x`` and ``zero_z`` are the slides' places (full steps) with the tip at (0, 0).
+        """
+        self._native.vl_probe_attach(self._bar, zero_x, zero_z)
+
+    def look_for_contact(self) -> None:
+        """Set the contact sensor anew after the metal has changed."""
+        self._native.vl_probe_look()
+
     def set_tool(self, tool: Tool) -> None:
         """Cut with this tool from now on."""
         self._native.vl_metal_tool(self._bar, ctypes.byref(tool.native()))

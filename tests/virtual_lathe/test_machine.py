@@ -5,53 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from virtual_lathe.chip import Chip
-from virtual_lathe.machine import AxisName, AxisOptions, AxisState, FaultKind, Machine
+from virtual_lathe.machine import AxisName, AxisOptions, FaultKind
+from virtual_lathe.motor_hand import FORWARD, Hand
 from virtual_lathe.worker import in_new_process
 
 Program = Callable[[str], str]
-LATD, TRISD, LATB, TRISB, INTCON2 = 0xF8C, 0xF95, 0xF8A, 0xF93, 0xFF1
-FORWARD = (5, 9, 10, 6)
 WAVE = (1, 8, 2, 4)
 HALF = (5, 1, 9, 8, 10, 2, 6, 4)
-SLOW = 1 / 500
 TRAVEL = 3575
-
-
-class Hand:
-    """Turns the X motor step by step."""
-
-    def __init__(self, firmware: str, x: AxisOptions) -> None:
-        """Switch on with axis X as given and the X coils on pattern 5."""
-        self.chip = Chip(firmware)
-        self.machine = Machine(x, AxisOptions(start=-900, travel=16072))
-        self.chip.run(1e-4)
-        self.chip.write(INTCON2, self.chip.peek(INTCON2) & 0x7F)
-        self.chip.write(TRISB, 0xF0)
-        self.chip.write(TRISD, 0xF0)
-        self.phase = 0
-        self.set(FORWARD[0])
-
-    def set(self, pattern: int, seconds: float = SLOW) -> None:
-        """Write a coil pattern and wait."""
-        self.chip.write(LATD, pattern)
-        self.chip.run(seconds)
-
-    def step(self, count: int, ring: tuple[int, ...] = FORWARD, seconds: float = SLOW) -> None:
-        """Turn by ``count`` entries of the ring."""
-        for _ in range(abs(count)):
-            self.phase += 1 if count > 0 else -1
-            self.set(ring[self.phase % len(ring)], seconds)
-
-    @property
-    def x(self) -> AxisState:
-        """The truth about X."""
-        return self.machine.axis(AxisName.X)
-
-    @property
-    def pressed(self) -> int:
-        """Level of the X switch's pin."""
-        return self.chip.level("RB4")
 
 
 def _backlash(firmware: str) -> list[float]:

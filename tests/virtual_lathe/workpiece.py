@@ -89,6 +89,7 @@ class Workpiece:
         self.pieces: list[Piece] = []
         self.chuck_radius = self.stock.chuck_radius or self.stock.radius + 1500
         self._slides: Point | None = None
+        self._probe = False
         self._trail: deque[tuple[int, Point]] = deque(maxlen=RATE_STEPS)
         self._crash_cycles: dict[str, int] = {}
 
@@ -97,12 +98,21 @@ class Workpiece:
         column = math.floor((z - self.first_z) * PER_STEP)
         return self.metal.radius(column) if 0 <= column < self.metal.count else 0.0
 
+    # -- contact ----------------------------------------------------------------------------------
+
+    def connect_probe(self) -> None:
+        """Put the contact sensor between the work and the tool that is in the holder."""
+        self._probe = True
+        self.metal.connect_probe(self.zero_x + self.tool.offset_x, self.zero_z + self.tool.offset_z)
+
     # -- cutting ----------------------------------------------------------------------------------
 
     def change_tool(self, tool: Tool) -> None:
         """Put another tool into the holder, where the slides stand."""
         self.tool = tool
         self.metal.set_tool(tool)
+        if self._probe:
+            self.connect_probe()
         if self._slides is not None:
             tip = self._tip(self._slides)
             if self.metal.move(tip, tip, trial=True):
@@ -118,6 +128,8 @@ class Workpiece:
         for move, then in zip_longest(every, every[1:]):
             if then is None or then.cycle - move.cycle >= SAME_STEP_CYCLES:
                 self._follow(move)
+        if self._probe and every:
+            self.metal.look_for_contact()
 
     def _follow(self, move: Move) -> None:
         slides = Point(move.z / 2 - self.zero_z, move.x / 2 - self.zero_x)

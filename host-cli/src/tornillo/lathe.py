@@ -191,6 +191,44 @@ class Lathe:
             )
         self._request(Command.OVERRIDE, percent)
 
+    def jog(self, axis: Axis, steps: int, rate: int = 0) -> None:
+        """Start to move `axis` by `steps`, at `rate` step/s or, for 0, at its rapid speed.
+
+        Works also when not homed: then without soft limits, at most at the setting home_rate, and
+        only away from a limit switch that is pressed (ChipError WRONG_WAY). When homed, a place
+        outside the travel is refused. The slide brakes and stops when the chip hears nothing for
+        half a second: ask for the status, or use `touching.still()`. `hold()` brakes it at once.
+        """
+        self._move(Command.JOG, self._beside(axis, self.status().position(axis) + steps), rate)
+
+    def goto(self, x: int | None = None, z: int | None = None, rate: int = 0) -> None:
+        """Start to move to machine steps `x`, `z` (None: where it is) at `rate` step/s, 0 rapid.
+
+        X goes first when it moves away from the spindle's axis, else Z. ChipError NOT_HOMED when
+        the position is not known, OUT_OF_RANGE for a place outside the travel.
+        """
+        now = self.status()
+        place = (now.x if x is None else x, now.z if z is None else z)
+        self._move(Command.GOTO, place, rate)
+
+    def touch(self, axis: Axis, end: int) -> None:
+        """Start to move `axis` slowly towards machine step `end` until the contact sensor closes.
+
+        One search; `tornillo.touching.touch()` repeats it and judges what it finds.
+        """
+        self._move(Command.TOUCH, self._beside(axis, end))
+
+    def _beside(self, axis: Axis, position: int) -> tuple[int, int]:
+        """The place at `position` of one axis, and of the other one where it is."""
+        now = self.status()
+        return (position, now.z) if axis is Axis.X else (now.x, position)
+
+    def _move(self, command: Command, place: tuple[int, int], *rate: int) -> None:
+        """Send a place; raises ChipError for one that the chip cannot count to."""
+        if not all(-0x8000 <= value <= 0x7FFF for value in place):
+            raise ChipError(command, ErrorCode.OUT_OF_RANGE)
+        self._request(command, *place, *rate)
+
     def zero(self, axis: Axis, steps: int) -> None:
         """Say that the tool now stands at part coordinate `steps` (X: radius) of `axis`."""
         self._request(Command.ZERO, axis, steps)

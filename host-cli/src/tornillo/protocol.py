@@ -8,7 +8,7 @@ from enum import IntEnum, IntFlag
 from struct import Struct
 from typing import NamedTuple
 
-PROTOCOL_VERSION = 2
+PROTOCOL_VERSION = 3
 FIRMWARE_VERSION = "0.1.0"
 USB_VENDOR_ID = 0x1209
 USB_PRODUCT_ID = 0x0001
@@ -84,6 +84,9 @@ class Command(IntEnum):
     RESET = 0x08
     ZERO = 0x09
     OVERRIDE = 0x0A
+    JOG = 0x0B
+    GOTO = 0x0C
+    TOUCH = 0x0D
     UPLOAD_BEGIN = 0x10
     UPLOAD_DATA = 0x11
     UPLOAD_COMMIT = 0x12
@@ -112,6 +115,8 @@ class State(IntEnum):
     HOLD = 3
     ALARM = 4
     PAUSE = 5
+    MOVING = 6
+    TOUCHING = 7
 
 
 class StatusFlag(IntFlag):
@@ -142,6 +147,15 @@ class Alarm(IntEnum):
     DEAD_STEPS_SPREAD = 9
     INTERNAL = 10
     PATH = 11
+    SWITCH_WIRING = 14
+    PROBE_UNEXPECTED = 15
+
+
+class StatusInput(IntFlag):
+    """Bits of the inputs in STATUS."""
+
+    CONTACT = 0x40
+    TOUCHED = 0x80
 
 
 class ResetCause(IntEnum):
@@ -174,6 +188,9 @@ class ErrorCode(IntEnum):
     STORE_FULL = 13
     FLASH_FAILED = 14
     ESTOP = 15
+    PROBE_CLOSED = 16
+    NOT_FITTED = 17
+    WRONG_WAY = 19
 
 
 class Refusal(IntEnum):
@@ -245,6 +262,8 @@ class SettingId(IntEnum):
     PULSE_US = 25
     SPINDLE_MIN = 26
     SPINDLE_MAX = 27
+    PROBE_FITTED = 28
+    TOUCH_BACK_OFF = 29
 
 
 #: Request payloads; UPLOAD_DATA is followed by its bytes.
@@ -259,6 +278,9 @@ REQUESTS = {
     Command.RESET: Struct("<"),
     Command.ZERO: Struct("<Bi"),
     Command.OVERRIDE: Struct("<B"),
+    Command.JOG: Struct("<iiH"),
+    Command.GOTO: Struct("<iiH"),
+    Command.TOUCH: Struct("<ii"),
     Command.UPLOAD_BEGIN: Struct("<HH"),
     Command.UPLOAD_DATA: Struct("<H"),
     Command.UPLOAD_COMMIT: Struct("<"),
@@ -273,7 +295,7 @@ REQUESTS = {
 #: Response data after the error byte; PART_READ answers bytes alone.
 RESPONSES = {
     Command.HELLO: Struct("<BBBBBHIIIIii8sH"),
-    Command.STATUS: Struct("<BBBBiiHHBBBBBHBHIB"),
+    Command.STATUS: Struct("<BBBBiiHHBBBBBHBHIBB"),
     Command.HOME: Struct("<"),
     Command.RUN: Struct("<"),
     Command.HOLD: Struct("<"),
@@ -282,6 +304,9 @@ RESPONSES = {
     Command.RESET: Struct("<"),
     Command.ZERO: Struct("<"),
     Command.OVERRIDE: Struct("<"),
+    Command.JOG: Struct("<"),
+    Command.GOTO: Struct("<"),
+    Command.TOUCH: Struct("<"),
     Command.UPLOAD_BEGIN: Struct("<"),
     Command.UPLOAD_DATA: Struct("<"),
     Command.UPLOAD_COMMIT: Struct("<BH"),
@@ -346,6 +371,7 @@ class StatusData(NamedTuple):
     bad_frames: int
     uptime_ms: int
     stream_low: int
+    inputs: int
 
 
 class UploadCommitData(NamedTuple):
@@ -472,7 +498,7 @@ SETTINGS = (
     Setting(SettingId.ZERO_X, -3575, -32000, 0, "steps", "machine X of the spindle axis"),
     Setting(SettingId.ZERO_Z, -8000, -32000, 0, "steps", "machine Z of the part's front face"),
     Setting(SettingId.HOME_RATE, 800, 20, 4000, "step/s", "speed towards the limit switches"),
-    Setting(SettingId.LATCH_RATE, 100, 20, 100, "step/s", "speed of the second, slow approach"),
+    Setting(SettingId.LATCH_RATE, 100, 20, 100, "step/s", "speed of slow approaches and touches"),
     Setting(SettingId.RAPID_RATE_X, 1000, 20, 32000, "step/s", "rapid speed of X"),
     Setting(SettingId.RAPID_RATE_Z, 1000, 20, 32000, "step/s", "rapid speed of Z"),
     Setting(SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide way, switch X closed to open"),
@@ -493,4 +519,6 @@ SETTINGS = (
     Setting(SettingId.PULSE_US, 5, 5, 60, "us", "step pulse in coil mode 3"),
     Setting(SettingId.SPINDLE_MIN, 100, 0, 32000, "rev/min", "slowest spindle speed"),
     Setting(SettingId.SPINDLE_MAX, 3800, 1, 32000, "rev/min", "fastest spindle speed"),
+    Setting(SettingId.PROBE_FITTED, 0, 0, 1, "", "1 when the tool-to-work contact sensor is wired"),
+    Setting(SettingId.TOUCH_BACK_OFF, 50, 1, 1000, "steps", "way back between two touches"),
 )

@@ -81,6 +81,21 @@ ERROR_TEXTS = {
         "the emergency stop is pressed or its wire is broken",
         "release the emergency stop, then `tornillo reset`",
     ),
+    ErrorCode.PROBE_CLOSED: Explanation(
+        "the contact sensor is closed already",
+        "move the tool away from the work, or look for chips and a short in the sensor's wire",
+    ),
+    ErrorCode.NOT_FITTED: Explanation(
+        "the machine has no contact sensor",
+        (
+            "touch by hand and type what you measure (`tornillo zero x --diameter`), or wire a "
+            "sensor and `tornillo settings set probe_fitted 1`"
+        ),
+    ),
+    ErrorCode.WRONG_WAY: Explanation(
+        "the limit switch at that end is pressed",
+        "jog the other way, or home",
+    ),
 }
 
 ALARM_TEXTS = {
@@ -101,7 +116,10 @@ ALARM_TEXTS = {
     ),
     Alarm.LIMIT: Explanation(
         "a limit switch closed while cutting or moving",
-        "check part zero and stock, reset, then home again",
+        (
+            "check part zero and stock, reset, jog away from the switch (`tornillo jog`), then "
+            "home again"
+        ),
     ),
     Alarm.ESTOP: Explanation(
         "the emergency stop was pressed",
@@ -134,6 +152,14 @@ ALARM_TEXTS = {
     Alarm.PATH: Explanation(
         "an arc whose centre does not fit its ends",
         "reset and home again; please report it with the part file",
+    ),
+    Alarm.SWITCH_WIRING: Explanation(
+        "a limit switch reads closed far from its end: its wire is broken, or many steps were lost",
+        "check the switch, its wire and plug, reset, then home again",
+    ),
+    Alarm.PROBE_UNEXPECTED: Explanation(
+        "the tool touched the work while it moved fast",
+        "look at tool and work, reset, jog away, then home again",
     ),
 }
 

@@ -19,6 +19,8 @@ STATES = {
     State.HOLD: later("held"),
     State.ALARM: later("ALARM"),
     State.PAUSE: later("pausing"),
+    State.MOVING: later("moving"),
+    State.TOUCHING: later("touching"),
 }
 #: What the flags of the status are called at the machine.
 INPUTS = (

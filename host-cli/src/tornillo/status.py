@@ -14,6 +14,7 @@ from tornillo.protocol import (
     State,
     StatusData,
     StatusFlag,
+    StatusInput,
 )
 from tornillo.protocol_texts import ALARM_TEXTS
 
@@ -25,8 +26,11 @@ AXIS_ALARMS = frozenset(
         Alarm.WRONG_SWITCH,
         Alarm.DEAD_STEPS_SPREAD,
         Alarm.STOPPED_HOMING,
+        Alarm.SWITCH_WIRING,
     }
 )
+#: The other bits mean nothing to a host.
+KNOWN_INPUTS = sum(StatusInput)
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,7 @@ class Status:
     bad_frames: int
     uptime_ms: int
     stream_low: int
+    inputs: StatusInput
 
     @classmethod
     def from_data(cls, data: StatusData) -> "Status":
@@ -76,6 +81,7 @@ class Status:
             ) from error
         values["alarm"] = alarm
         values["flags"] = StatusFlag(data.flags)
+        values["inputs"] = StatusInput(data.inputs & KNOWN_INPUTS)
         values["slot"] = None if data.slot == SLOT_NONE else data.slot
         return cls(alarm_axis=axis, **values)
 
@@ -91,8 +97,17 @@ class Status:
 
     @property
     def moving(self) -> bool:
-        """Whether the machine is homing or cutting."""
-        return self.state in (State.HOMING, State.RUNNING)
+        """Whether the machine is homing, cutting, touching or on its way to a place."""
+        return self.state in (State.HOMING, State.RUNNING, State.MOVING, State.TOUCHING)
+
+    @property
+    def contact(self) -> bool:
+        """Whether the contact sensor is closed; never without one."""
+        return StatusInput.CONTACT in self.inputs
+
+    def position(self, axis: Axis) -> int:
+        """Where the tool is on one axis, machine steps."""
+        return self.x if axis is Axis.X else self.z
 
     @property
     def under_way(self) -> bool:

@@ -32,6 +32,9 @@ SECTIONS: dict[str, dict[str, Verb]] = {
     },
     "Cutting": {
         "home": Verb("running", "Find the limit switches and measure the dead steps."),
+        "jog": Verb("moving", "Move the slides by keys, or one by a distance."),
+        "goto": Verb("moving", "Move the tool to a place of the part."),
+        "touch": Verb("moving", "Touch the work with the tool; set part zero."),
         "zero": Verb("settings", "Tell the lathe where the tool stands."),
         "run": Verb("running", "Cut a part."),
         "hold": Verb("running", "Stop the run so that it can go on."),

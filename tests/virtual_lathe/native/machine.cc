@@ -13,6 +13,8 @@
 
 #include "machine.hh"
 
+#include "probe.hh"
+
 #include <algorithm>
 #include <cmath>
 
@@ -187,13 +189,17 @@ void Axis::turn(uint64_t cycle, int half_steps)
     update_switch();
     machine().moves.push_back(
         {cycle, machine().axes[0].state.slide, machine().axes[1].state.slide});
+    probe().look();
 }
 
 // ---- contacts ---------------------------------------------------------------
 
 void Machine::set_contact(int pin, bool open)
 {
-    pins().drive(pin, open ? VL_OPEN : VL_LOW);
+    if (open && pin == PROBE_PIN)
+        pins().drive(pin, 5.0, PROBE_PULL_UP_OHM);
+    else
+        pins().drive(pin, open ? VL_OPEN : VL_LOW);
 }
 
 void Machine::contact(int pin, bool open)
@@ -249,6 +255,7 @@ void Machine::attach()
 {
     axes[0].attach(0, X_SWITCH);
     axes[1].attach(1, Z_SWITCH);
+    contact(PROBE_PIN, true);
     pins().listen([this](uint64_t cycle, uint64_t levels, uint64_t changed) {
         if (changed >> X_COILS & 15)
             axes[0].coils(cycle, levels >> X_COILS & 15);

@@ -153,6 +153,20 @@ void Metal::let_fall(vl_cut &cut)
         update_highest(b);
 }
 
+bool Metal::touches(double x, double z) const
+{
+    for (size_t b = 0; b < highest_.size(); b++) {
+        size_t end = std::min((b + 1) * BLOCK, radii.size());
+        double low = outline_.lowest(z_of(b * BLOCK) - z, z_of(end) - z);
+        if (highest_[b] < x + low - TINY)
+            continue;
+        for (size_t i = b * BLOCK; i < end; i++)
+            if (radii[i] > 0 && radii[i] >= x + outline_.at(z_of(i) - z) - TINY)
+                return true;
+    }
+    return false;
+}
+
 vl_cut Metal::move(const vl_path &path, bool trial)
 {
     vl_cut cut = {0, -1, 0};
@@ -196,6 +210,11 @@ int copy(const std::vector<double> &from, double *to, int room)
 }
 
 } // namespace
+
+lathe::Metal &lathe::piece(int number)
+{
+    return *pieces()[number];
+}
 
 int vl_metal_new(double radius, int first_z, int last_z)
 {

@@ -50,6 +50,8 @@ public:
     void set_tool(const vl_tool &tool);
     // Moves the tip on a straight line.  A trial removes nothing.
     vl_cut move(const vl_path &path, bool trial);
+    // Whether there is no gap to a tool that has its tip here.
+    bool touches(double x, double z) const;
 
     std::vector<double> radii;  // steps, one for each column
     std::vector<double> fallen; // the piece that fell off last
@@ -72,6 +74,9 @@ private:
     std::vector<double> highest_; // radius in each block
     std::vector<size_t> near_;    // blocks the present move may touch
 };
+
+// The metal that vl_metal_new() has numbered so.
+Metal &piece(int number);
 
 } // namespace lathe
 

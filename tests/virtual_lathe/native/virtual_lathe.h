@@ -213,6 +213,16 @@ void vl_motor_power(int on);
 /* Contact bounce after each change in us, noise pulses per second. */
 void vl_switch_quality(unsigned bounce_us, unsigned noise_hz, unsigned seed);
 
+/* Contact sensor between tool and a metal (below): RA1 low while they touch,
+ * with the bounce of vl_switch_quality().  zero_x, zero_z: machine position of
+ * the slides, full steps, with the tip at the metal's (0, 0); again after each
+ * change of tool.  Without one RA1 is pulled up. */
+void vl_probe_attach(int metal, double zero_x, double zero_z);
+/* Looks again: after vl_metal_move(). */
+void vl_probe_look(void);
+/* A chip or a chafed wire connects tool and work. */
+void vl_probe_short(int shorted);
+
 /* Every movement of a slide, and everything that went wrong.  Both functions
  * hand out the oldest entries and forget them; they return how many. */
 struct vl_move {

@@ -4,18 +4,36 @@
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+import click
+
+from tornillo.commands.connection import connected
+from tornillo.commands.planning import drives_of
+from tornillo.commands.progress import on_terminals
 from tornillo.errors import ChipError
-from tornillo.jogging import SIZES, JogPad
-from tornillo.keys import Keys
+from tornillo.jogging import SIZES, JogPad, fastest
+from tornillo.keys import Keys, keyboard
 from tornillo.language import _
 from tornillo.protocol import Axis
 from tornillo.status import Status
+from tornillo.units import Scale
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
 #: Seconds without a key from one look at the lathe to the next; the chip waits for three.
 LOOK_S = 0.03
+
+
+def open_pad(units: str) -> None:
+    """Move the connected lathe by keys; positions in `units`."""
+    if not on_terminals():
+        raise click.UsageError(_("moving by keys needs a terminal; scripts give axis and distance"))
+    with connected() as lathe:
+        drives = drives_of(lathe)
+        most = fastest(drives.start, drives.acceleration)
+        rapid = min(drives.rapid_x, drives.rapid_z)
+        with keyboard() as keys:
+            show_pad(JogPad(lathe, Scale(units, lathe.machine()), rapid, most), keys)
 
 
 def show_pad(pad: JogPad, keys: Keys) -> None:

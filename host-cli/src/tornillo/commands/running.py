@@ -121,7 +121,7 @@ def _started(lathe: Lathe, follow: bool) -> None:
 
 @click.command()
 def stop() -> None:
-    """End the run or the homing.
+    """End the run, the homing, or whatever else moves.
 
     \b
     Example: tornillo stop
@@ -182,6 +182,7 @@ def status_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, o
     values["alarm_axis"] = None if now.alarm_axis is None else now.alarm_axis.name
     values["reset_cause"] = now.reset_cause.name
     values["flags"] = [flag.name for flag in now.flags]
+    values["inputs"] = [flag.name for flag in now.inputs]
     return {
         **values,
         "homed": now.homed,
@@ -229,6 +230,8 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
         )
         if flag in now.flags
     ]
+    if now.contact:
+        pressed.append(_("contact sensor"))
     if pressed:
         rows["pressed"] = ", ".join(pressed)
     rows["firmware"] = _("{firmware}, serial number {serial_number}").format(

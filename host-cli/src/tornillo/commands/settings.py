@@ -118,7 +118,8 @@ def _named(name: str) -> Setting:
 def zero() -> None:
     """Tell the lathe where the tool stands, in part coordinates.
 
-    Touch the work with the tool first. The part zero is stored in the lathe.
+    Turn a diameter or the face, leave that slide where it is, measure, and type what you have
+    measured. The part zero is stored in the lathe. With a contact sensor: `tornillo touch`.
 
     \b
     Examples: tornillo zero x --diameter 25.4
@@ -126,9 +127,9 @@ def zero() -> None:
     """
 
 
-def _finite(_context: click.Context, _option: click.Parameter, value: float) -> float:
+def finite(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
     """Refuse nan and inf."""
-    if not math.isfinite(value):
+    if value is not None and not math.isfinite(value):
         raise click.BadParameter(_("must be an ordinary number"))
     return value
 
@@ -138,7 +139,7 @@ def _finite(_context: click.Context, _option: click.Parameter, value: float) -> 
     "--diameter",
     type=click.FloatRange(min=0),
     required=True,
-    callback=_finite,
+    callback=finite,
     help="Diameter that the tool touches.",
 )
 @units_option
@@ -155,7 +156,7 @@ def zero_x(diameter: float, units: str) -> None:
 
 
 @zero.command("z")
-@click.option("--at", type=float, required=True, callback=_finite, help="z where the tool stands.")
+@click.option("--at", type=float, required=True, callback=finite, help="z where the tool stands.")
 @units_option
 def zero_z(at: float, units: str) -> None:
     """The tool stands at this z; 0 is the finished front face.

@@ -20,9 +20,12 @@ from rich.console import Console
 from rich.text import Text
 from tornillo import Lathe, Machine, Part
 from tornillo.cli import main as tornillo
+from tornillo.commands.jog_pad import frame as jog_frame
 from tornillo.commands.watch import View
 from tornillo.drawing import draw_part
+from tornillo.jogging import JogPad
 from tornillo.protocol import State
+from tornillo.units import Scale
 from virtual_lathe.lathe import Options, VirtualLathe
 
 DOCS = Path(__file__).resolve().parent
@@ -100,7 +103,7 @@ def new_screen() -> None:
 
 
 def live_screens() -> None:
-    """`tornillo watch` of a lathe that cuts."""
+    """`tornillo jog` of a lathe that waits, `tornillo watch` of one that cuts."""
     path = EXAMPLES / "pawn.toml"
     lathe = VirtualLathe(Options(part=path, backlash_x=23, backlash_z=31))
     lathe.plug()
@@ -109,6 +112,10 @@ def live_screens() -> None:
         chip.home()
         while chip.status().state is State.HOMING:
             lathe.run(POLL_S)
+        pad = JogPad(chip, Scale("mm", chip.machine()), rapid=1000, most=1000)
+        console = recorder()
+        console.print(jog_frame(pad, chip.status()))
+        save(console, "jog", "tornillo jog")
         view = View(chip, "mm")
         view.readout.follow(chip.status())
         chip.run(slot)

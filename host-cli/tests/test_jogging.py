@@ -14,6 +14,7 @@ from tornillo.jogging import (
     FAR_STEPS,
     LATE_S,
     RELEASED_S,
+    SILENCE_MS,
     SPEEDS_MS,
     STOPPED_WITHIN_S,
     JogPad,
@@ -25,8 +26,6 @@ from tornillo.status import Status
 from tornillo.units import Scale
 
 LOOK_MS = 30
-#: How long the chip moves without hearing of the host.
-SILENCE_MS = 110
 
 
 class Slides:
@@ -45,8 +44,9 @@ class Slides:
         self._way = 0
         self._rate = 0
 
-    def jog(self, axis: Axis, steps: int, rate: int = 0) -> None:
+    def jog(self, axis: Axis, steps: int, rate: int = 0, patience_ms: int = 0) -> None:
         """Begin."""
+        assert patience_ms == SILENCE_MS
         if self.refused is not None:
             raise ChipError(Command.HOLD, self.refused)
         assert self.moving is None
@@ -180,6 +180,7 @@ def test_braking_fits_into_what_the_dead_man_leaves(machine: Machine) -> None:
     acceleration = SETTINGS[SettingId.ACCELERATION].default
     most = fastest(start, acceleration)
     assert most >= 1000  # a millisecond a step, the fastest of paper S0, is allowed
+    assert SILENCE_MS / 1000 + (most - start) / acceleration < STOPPED_WITHIN_S
     assert RELEASED_S + LATE_S + (most - start) / acceleration <= STOPPED_WITHIN_S
 
 

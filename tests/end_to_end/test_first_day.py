@@ -132,12 +132,16 @@ def test_the_first_day_of_a_new_user(tmp_path: Path, workshop: Workshop) -> None
         makes_a_part(user)
         makes_a_wrong_part(user, tmp_path)
         cuts_it(user)
+        moves_by_keys(user)
         presses_ctrl_c(user)
         watches_it(user)
         loses_the_cable(user, workshop)
         has_an_alarm(user, workshop)
     workshop.switch_off()
-    workshop.assert_part_is_right()
+    report = workshop.report
+    assert all(abs(entry["error_steps"]) < 1 for entry in report["dimensions"])
+    # The emergency stop may cost steps: that is why it asks for homing.
+    assert (len(report["dimensions"]), report["crashes"], report["gouge_max_steps"]) == (3, [], 0)
 
 
 def looks_around(user: User) -> None:
@@ -200,6 +204,28 @@ def presses_ctrl_c(user: User) -> None:
     assert "nothing is lost" in told
     assert "Try: go on with `tornillo resume --follow`" in told
     assert user.types("tornillo resume --follow").rstrip().endswith("finished")
+
+
+def moves_by_keys(user: User) -> None:
+    """A step towards the chuck and one away from the axis, and back to the shell."""
+
+    def place() -> tuple[int, int]:
+        shown = re.search(r"machine +X (-?\d+), Z (-?\d+) steps", user.types("tornillo status"))
+        assert shown is not None
+        return int(shown[1]), int(shown[2])
+
+    x, z = place()
+    user.begin("tornillo jog")
+    user.sees("moves by")
+    # This lathe runs faster than a real one, and so does its dead-man: be quick.
+    user.shell.send("1\r")
+    user.sees("1 ms a step")
+    for arrow, seen in (("[D", f"{z - 1} steps"), ("[B", f"{x - 1} steps")):
+        user.shell.send(f"\x1b{arrow}")
+        user.sees(seen)
+    user.shell.send("q")
+    user.ends(0)
+    assert place() == (x - 1, z - 1)
 
 
 def watches_it(user: User) -> None:

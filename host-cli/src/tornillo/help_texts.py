@@ -13,7 +13,6 @@ import click
 from tornillo.language import _, later
 
 VERBATIM = "\b"
-HELP = later("Show this message and exit.")
 LABELS = (later("Examples:"), later("Example:"))
 
 #: Help as it was written, by command: its text, and those of its options.
@@ -29,9 +28,6 @@ def translate(command: click.Command) -> click.Command:
     for parameter, written in zip(command.params, options, strict=True):
         if isinstance(parameter, click.Option) and written:
             parameter.help = _(written)
-    for parameter in command.get_params(click.Context(command)):
-        if isinstance(parameter, click.Option) and parameter.name == "help":
-            parameter.help = _(HELP)
     if type(command) is click.Group:
         for inner in command.commands.values():
             translate(inner)

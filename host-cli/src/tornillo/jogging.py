@@ -19,6 +19,8 @@ from tornillo.units import NM_PER_UNIT, SECONDS_PER_MINUTE, Scale
 #: From the last sign of a held key to the request to hold, in seconds. Terminals repeat keys
 #: every 25 to 40 ms, macOS every 90.
 RELEASED_S = 0.1
+#: For so long the chip goes on without hearing of us, in milliseconds: three looks of the screen.
+SILENCE_MS = 100
 #: From the release of the key, or the loss of the link, to the stand, in seconds.
 STOPPED_WITHIN_S = 0.2
 #: What drawing the screen, one question and one answer may add, in seconds.
@@ -41,7 +43,7 @@ FAR_STEPS = 32000
 class Mover(Protocol):
     """What moves; `tornillo.Lathe` does."""
 
-    def jog(self, axis: Axis, steps: int, rate: int = 0) -> None:
+    def jog(self, axis: Axis, steps: int, rate: int = 0, patience_ms: int = 0) -> None:
         """Move `axis` by `steps` at `rate` step/s, as long as the chip hears of us."""
 
     def hold(self) -> None:
@@ -154,7 +156,7 @@ class JogPad:
         else:
             steps = sign * self.steps(axis)
         if steps:
-            self.mover.jog(axis, steps, self.rate)
+            self.mover.jog(axis, steps, self.rate, SILENCE_MS)
 
     def _way(self, axis: Axis, sign: int, status: Status) -> int:
         """Steps to the end of the travel, where it is known."""

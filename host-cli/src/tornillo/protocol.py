@@ -278,7 +278,7 @@ REQUESTS = {
     Command.RESET: Struct("<"),
     Command.ZERO: Struct("<Bi"),
     Command.OVERRIDE: Struct("<B"),
-    Command.JOG: Struct("<iiH"),
+    Command.JOG: Struct("<iiHH"),
     Command.GOTO: Struct("<iiH"),
     Command.TOUCH: Struct("<ii"),
     Command.UPLOAD_BEGIN: Struct("<HH"),

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Write the tables of the pages that come from firmware/link/protocol.toml.
+"""Write the tables of the pages that come from protocol.toml and states.toml.
 
     python3 docs/generate_tables.py           write the pages
     python3 docs/generate_tables.py --check   exit 1 when one is stale
@@ -14,7 +14,7 @@ from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
 LINK = DOCS.parent / "firmware" / "link"
-PAGES = ("alarms.md", "part-file.md", "settings.md")
+PAGES = ("alarms.md", "part-file.md", "settings.md", "states.md")
 
 
 def main(arguments: list[str]) -> int:
@@ -23,15 +23,18 @@ def main(arguments: list[str]) -> int:
         print(__doc__, file=sys.stderr)
         return 2
     sys.path.insert(0, str(LINK))
+    import state_table
     from protocol_model import load
     from protocol_pages import fill
+    from state_pages import state_tables
 
     model = load(LINK / "protocol.toml")
+    states = state_tables(state_table.load())
     stale = False
     for name in PAGES:
         page = DOCS / name
         old = page.read_text(encoding="utf-8")
-        new = fill(model, old)
+        new = fill(model, old, states)
         if new == old:
             continue
         stale = True

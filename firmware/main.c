@@ -7,6 +7,7 @@
 #include "link/commands.h"  /* reset cause */
 #include "link/frame.h"     /* frame_poll */
 #include "link/protocol.h"  /* reset causes */
+#include "motion/path.h"    /* moves */
 #include "motion/ramp.h"    /* speed */
 #include "motion/stream.h"  /* step timer */
 #include "panel/inputs.h"   /* buttons */
@@ -110,6 +111,24 @@ static void set_up_pins(void)
     PORTE |= PORTE_RDPU;
 }
 
+/* Byte code takes 0.2 ms a turn, so what acts on inputs, which change once a
+   millisecond, is asked as often; motion and frames are served all the time. */
+static void serve(void)
+{
+    static uint8_t served; /* millisecond */
+    uint8_t now = (uint8_t)tick_now();
+
+    if (now != served) {
+        served = now;
+        machine_poll();
+        led_poll();
+    }
+    if (machine_state != STATE_IDLE && machine_state != STATE_ALARM) {
+        path_poll();
+    }
+    frame_poll();
+}
+
 void main(void)
 {
     set_up_pins();
@@ -124,8 +143,6 @@ void main(void)
     INTCON = INTCON_BOTH_LEVELS;
     for (;;) {
         __asm__("clrwdt");
-        machine_poll();
-        frame_poll();
-        led_poll();
+        serve();
     }
 }

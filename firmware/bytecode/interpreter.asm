@@ -9,9 +9,9 @@
 ;            flags of A - right, Z of all 16 bits
 ; TBLPTR     next byte of byte code; upper byte 0
 ; FSR1       the software stack: values pushed, arguments of native functions,
-;            return addresses (high byte on top; 0 = back to native code)
+;            return addresses (high byte on top; 0xFF = back to native code)
 ; resume_at  while an operand comes from the table of pairs, or a native
-;            function runs: where the byte code goes on; high byte 0 = neither
+;            function runs: where the byte code goes on; high byte 0xFF = neither
 ;
 ; An operation takes 25 to 45 cycles. Main loop only.
 
@@ -41,8 +41,8 @@ interpreter_code        code
 byte_enter:
         movff   resume_at, POSTDEC1
         movff   resume_at + 1, POSTDEC1
-        clrf    POSTDEC1, ACCESS
-        clrf    resume_at + 1, ACCESS
+        setf    POSTDEC1, ACCESS
+        setf    resume_at + 1, ACCESS
         movwf   TBLPTRH, ACCESS
         movff   PRODL, TBLPTRL
         bra     next
@@ -66,10 +66,55 @@ op_ret0:
         clrf    a, ACCESS
 op_ret:
         movf    PREINC1, W, ACCESS
-        bz      leave
+        bn      leave
         movwf   TBLPTRH, ACCESS
         movff   PREINC1, TBLPTRL
         bra     next
+
+; Near the branches that lead here: those reach 128 instructions.
+call_function:                          ; W = bits 8 to 12 of the offset
+        movwf   PRODL, ACCESS
+        rcall   operand
+        movff   TBLPTRL, POSTDEC1
+        movff   TBLPTRH, POSTDEC1
+        addlw   LOW(byte_code)
+        movwf   TBLPTRL, ACCESS
+        movlw   HIGH(byte_code)
+        addwfc  PRODL, W, ACCESS
+        movwf   TBLPTRH, ACCESS
+        bra     next
+
+memory:                                 ; W = 8 * operation + bits 8 to 10
+        movwf   FSR0H, ACCESS
+        rrncf   WREG, W, ACCESS
+        rrncf   WREG, W, ACCESS
+        rrncf   WREG, W, ACCESS
+        andlw   0x1F
+        addlw   MEMORY_NUMBER
+        movwf   PRODL, ACCESS
+        movlw   7
+        andwf   FSR0H, F, ACCESS
+        rcall   operand
+        movwf   FSR0L, ACCESS
+        movf    PRODL, W, ACCESS
+        bra     jump
+
+; An operation of two bytes from the table: its second byte is taken there, by
+; operand, which then leads back.
+pair:                                   ; W = number of the pair
+        movff   TBLPTRL, resume_at
+        movff   TBLPTRH, resume_at + 1
+        rlncf   WREG, W, ACCESS
+        addlw   LOW(byte_pairs)
+        movwf   TBLPTRL, ACCESS
+        movlw   HIGH(byte_pairs)
+        movwf   TBLPTRH, ACCESS
+        btfsc   STATUS, C, ACCESS
+        incf    TBLPTRH, F, ACCESS
+        tblrd   *+
+        movf    TABLAT, W, ACCESS
+        addlw   -FIRST_PAIR
+        bra     execute
 
 op_ld1:
         movlw   1
@@ -185,61 +230,17 @@ memory_operations:
         bra     op_sub16
         bra     op_cmp16
 
-; An operation of two bytes from the table: its second byte is taken there, by
-; operand, which then leads back.
-pair:                                   ; W = number of the pair
-        movff   TBLPTRL, resume_at
-        movff   TBLPTRH, resume_at + 1
-        rlncf   WREG, W, ACCESS
-        addlw   LOW(byte_pairs)
-        movwf   TBLPTRL, ACCESS
-        movlw   HIGH(byte_pairs)
-        movwf   TBLPTRH, ACCESS
-        btfsc   STATUS, C, ACCESS
-        incf    TBLPTRH, F, ACCESS
-        tblrd   *+
-        movf    TABLAT, W, ACCESS
-        addlw   -FIRST_PAIR
-        bra     execute
-
 ; W, TABLAT = next byte of an operation.
 operand:
         tblrd   *+
-        movf    resume_at + 1, W, ACCESS
-        bz      operand_read
-        movwf   TBLPTRH, ACCESS
+        btfsc   resume_at + 1, 7, ACCESS
+        bra     operand_read
+        movff   resume_at + 1, TBLPTRH
         movff   resume_at, TBLPTRL
-        clrf    resume_at + 1, ACCESS
+        setf    resume_at + 1, ACCESS
 operand_read:
         movf    TABLAT, W, ACCESS
         return
-
-call_function:                                   ; W = bits 8 to 12 of the offset
-        movwf   PRODL, ACCESS
-        rcall   operand
-        movff   TBLPTRL, POSTDEC1
-        movff   TBLPTRH, POSTDEC1
-        addlw   LOW(byte_code)
-        movwf   TBLPTRL, ACCESS
-        movlw   HIGH(byte_code)
-        addwfc  PRODL, W, ACCESS
-        movwf   TBLPTRH, ACCESS
-        bra     next
-
-memory:                                 ; W = 8 * operation + bits 8 to 10
-        movwf   FSR0H, ACCESS
-        rrncf   WREG, W, ACCESS
-        rrncf   WREG, W, ACCESS
-        rrncf   WREG, W, ACCESS
-        andlw   0x1F
-        addlw   MEMORY_NUMBER
-        movwf   PRODL, ACCESS
-        movlw   7
-        andwf   FSR0H, F, ACCESS
-        rcall   operand
-        movwf   FSR0L, ACCESS
-        movf    PRODL, W, ACCESS
-        bra     jump
 
 op_native8:
         rcall   native
@@ -264,7 +265,7 @@ native:
 go_on:
         movff   resume_at, TBLPTRL
         movff   resume_at + 1, TBLPTRH
-        clrf    resume_at + 1, ACCESS
+        setf    resume_at + 1, ACCESS
         return
 native_call:
         tblrd   *+

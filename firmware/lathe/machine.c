@@ -374,7 +374,6 @@ void machine_poll(void)
     }
     if (!machine_quiet()) {
         moved_at = tick_now();
-        path_poll();
     }
 }
 

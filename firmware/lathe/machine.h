@@ -3,16 +3,8 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- *   state     RUN          HOLD    STOP           motion ends       trip
- *   IDLE      home, or     select  -              -                 ALARM
- *             start part
- *   HOMING    -            -       ALARM          IDLE, homed       ALARM
- *   RUNNING   -            HOLD    IDLE           IDLE or PAUSE     ALARM
- *   HOLD      RUNNING      -       IDLE           -                 ALARM
- *   PAUSE     RUNNING      -       IDLE           -                 ALARM
- *   MOVING    -            IDLE    IDLE           IDLE              ALARM
- *   TOUCHING  -            -       IDLE           IDLE              ALARM
- *   ALARM     -            -       IDLE           -                 ALARM
+ * The whole table of states and events, with every command, is states.toml
+ * beside this file; docs/states.md shows it, and a test walks it.
  *
  * RUN and STOP are buttons; the commands HOME, RUN and RESUME are the three
  * meanings of the first, STOP and RESET those of the second; JOG and GOTO
@@ -44,7 +36,7 @@ extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
 /* Starts in IDLE, or in ALARM when the settings were lost. */
 void machine_init(void);
 
-/* Serves trips, buttons, and what moves; every turn of the main loop. */
+/* Serves trips, buttons, and what moves; every millisecond. */
 void machine_poll(void);
 
 uint8_t machine_home(void);

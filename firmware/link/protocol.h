@@ -24,14 +24,14 @@
 #define CRC16_POLYNOMIAL                    0x1021
 #define CRC16_INITIAL                       0xFFFF
 
-/* units of the part store; a part takes one to eight, its slot is the first */
-#define PART_SLOTS                          8
+/* units of the part store; a part takes one to ten, its slot is the first */
+#define PART_SLOTS                          12
 /* bytes of one unit, 64 of them for its header when it is a part's first */
 #define PART_UNIT                           256
 /* no slot; in RUN: the selected part */
 #define SLOT_NONE                           255
 /* bytes of a part image */
-#define PART_IMAGE_MAX                      1984
+#define PART_IMAGE_MAX                      2496
 /* bytes of one UPLOAD_DATA or PART_READ piece */
 #define UPLOAD_PIECE_MAX                    32
 /* operations of one part */
@@ -111,7 +111,6 @@
 #define ALARM_SETTINGS_LOST                 7
 #define ALARM_STOPPED_HOMING                8
 #define ALARM_DEAD_STEPS_SPREAD             9
-#define ALARM_INTERNAL                      10
 #define ALARM_PATH                          11
 #define ALARM_SWITCH_WIRING                 14
 #define ALARM_PROBE_UNEXPECTED              15
@@ -266,7 +265,7 @@
 #define TOUCH_X_AT                          0
 #define TOUCH_Z_AT                          4
 /* Start to receive a part image; an upload under way is forgotten.
- * OUT_OF_RANGE: length is not 32 to 1984. */
+ * OUT_OF_RANGE: length is not 32 to 2496. */
 #define COMMAND_UPLOAD_BEGIN                0x10
 #define UPLOAD_BEGIN_REQUEST_SIZE           4
 #define UPLOAD_BEGIN_RESPONSE_SIZE          1
@@ -418,7 +417,7 @@
 /* format is not 2, or a byte, flag or kind has a value that is not defined,
  * or width or below of a tool is more than 8000 */
 #define REFUSAL_FORMAT                      1
-/* shorter than its header, longer than 1984 bytes, fewer than 4 bytes left
+/* shorter than its header, longer than 2496 bytes, fewer than 4 bytes left
  * for a record, or a record that is shorter than 4 bytes or reaches behind
  * the end */
 #define REFUSAL_LENGTH                      2

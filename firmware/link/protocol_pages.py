@@ -102,12 +102,12 @@ def operations(model: Model) -> str:
     return "".join(parts) + "\n"
 
 
-def fill(model: Model, page: str) -> str:
-    """`page` with every marked table written anew.
+def fill(model: Model, page: str, others: dict[str, str] | None = None) -> str:
+    """`page` with every marked table written anew; `others` are tables made elsewhere.
 
     Raises KeyError when a marker names no table.
     """
-    tables = {
+    tables = (others or {}) | {
         "limits": limits(model),
         "commands": commands(model),
         "errors": explained(model, "error", "cause", "remedy"),

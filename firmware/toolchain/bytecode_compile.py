@@ -30,6 +30,7 @@ class Compiler(Expressions):
         parameters = [parameter for parameter, _ in signature.parameters]
         function = Function(unit.renamed.get(name, name), parameters, signature.result)
         function.locals.update(signature.parameters)
+        function.module = unit.name
         super().__init__(unit, native, function)
         self.breaks: list[str] = []
         self.continues: list[str] = []

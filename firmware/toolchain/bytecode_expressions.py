@@ -16,6 +16,7 @@ SIGNED_JUMP = {"<": "jlt", ">=": "jge", ">": "jgt", "<=": "jle", "==": "jeq", "!
 UNSIGNED_JUMP = SIGNED_JUMP | {"<": "jltu", ">=": "jgeu", ">": "jgtu", "<=": "jleu"}
 SIMPLE_OPERATIONS = {"+": "add", "-": "sub", "&": "and", "|": "or", "^": "xor"}
 COMMUTATIVE = {"+", "&", "|", "^", "*"}
+FROM_RAM = {"add8", "add16", "sub8", "sub16", "and8", "and16", "or8", "or16", "xor8"}
 LIBRARY = {"*": "_mulint", "/": "_divuint", "%": "_moduint"}
 
 
@@ -238,14 +239,10 @@ class Expressions:
         match node.op:
             case "!":
                 return self.truth(node)
-            case "-":
-                self.value(node.expr)
-                self.emit("neg")
-                return I16
-            case "~":
-                self.value(node.expr)
-                self.emit("com")
-                return I16
+            case "-" | "~":
+                kind = self.value(node.expr)
+                self.emit("neg" if node.op == "-" else "com")
+                return common(kind, I16)
             case "*":
                 kind = self.value(node.expr).element
                 self.emit("ldi8" if kind.size == 1 else "ldi16")
@@ -305,6 +302,9 @@ class Expressions:
     def operate(self, op: str, left: c_ast.Node, right: c_ast.Node, kind: Type) -> None:
         """A = left op right by the shortest way."""
         number = self.constant(right)
+        if op in "|^" and number is not None and number & 0xFFFF > 0xFF:
+            self.stacked(f"{SIMPLE_OPERATIONS[op]}s", left, right)
+            return
         if op in LIBRARY:
             if number is not None and number & (number - 1) == 0 and number > 0:
                 self.power_of_two(op, left, number)
@@ -327,7 +327,7 @@ class Expressions:
             self.emit(f"{name}k", number & 0xFFFF)
             return
         place = self.place(right)
-        if place is not None and place[1].size in (1, 2):
+        if place is not None and f"{name}{8 * place[1].size}" in FROM_RAM:
             self.value(left)
             self.emit(f"{name}{8 * place[1].size}", place[0])
             return
@@ -419,6 +419,9 @@ class Expressions:
     ) -> None:
         """Write the arguments where the function has them, the last to A, and call."""
         count = len(arguments)
+        if any(name in calls_in(later, self.unit) for later in arguments[1:]):
+            self.call_within_itself(name, signature, arguments)
+            return
         for index, (argument, (parameter, kind)) in enumerate(
             zip(arguments, signature.parameters, strict=True)
         ):
@@ -430,6 +433,20 @@ class Expressions:
             for later in arguments[index + 1 :]:
                 self.function.meanwhile |= {(name, called) for called in calls_in(later, self.unit)}
             self.store(Place(f"{name}.{parameter}"), kind)
+        self.emit("call", name)
+
+    def call_within_itself(
+        self, name: str, signature: Signature, arguments: list[c_ast.Node]
+    ) -> None:
+        """Call f(x, f(y)): the arguments wait on the stack until all are there."""
+        for argument in arguments:
+            self.value(argument)
+            self.emit("push")
+        for parameter, kind in reversed(signature.parameters):
+            self.load_constant(0)
+            self.emit("adds")
+            self.store(Place(f"{name}.{parameter}"), kind)
+        self.load(Place(f"{name}.{signature.parameters[-1][0]}"), signature.parameters[-1][1])
         self.emit("call", name)
 
     # --- assignments -----------------------------------------------------------

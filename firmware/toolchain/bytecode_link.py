@@ -116,6 +116,14 @@ class Layout:
         if self.length > CODE_MAX:
             raise BytecodeError(f"{self.length} bytes of byte code, {CODE_MAX} can be called")
 
+    def sizes(self) -> dict[str, int]:
+        """Return the bytes of each source file's functions; equal pieces are nobody's."""
+        found: Counter[str] = Counter()
+        for function in self.functions:
+            lines = [line for line in function.code if isinstance(line, Code)]
+            found[function.module] += sum(map(self.size, lines))
+        return dict(found)
+
     def size(self, line: Code | Label) -> int:
         """Return the bytes of an operation as it is laid out."""
         if isinstance(line, Code):
@@ -207,7 +215,7 @@ class Layout:
             return [("HIGH", place), ("LOW", place)]
         if line.op in ("native8", "native16"):
             return [NUMBER[line.op], self.natives[str(operand)]]
-        assert isinstance(operand, int)
+        assert isinstance(operand, int), line
         return [NUMBER[line.op], operand]
 
 

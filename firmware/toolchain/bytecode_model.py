@@ -54,6 +54,7 @@ class Function:
     code: list[Code | Label] = field(default_factory=list)
     locals: dict[str, Type] = field(default_factory=dict)
     calls: set[str] = field(default_factory=set)
+    module: str = ""  # the source file
     meanwhile: set[tuple[str, str]] = field(default_factory=set)  # arguments wait for a call
 
 

@@ -185,7 +185,7 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, o
     layout = Layout(functions, natives)
     modules = [source.module for source in sources]
     text = write(modules, layout, frames, entries)
-    report = {"entries": entries, "locals": frames.total, "functions": stack_use(functions)}
+    report = {"entries": entries, "flash": layout.sizes(), "functions": stack_use(functions)}
     print(
         f"{layout.length} bytes of byte code, {2 * len(layout.pairs)} of pairs, "
         f"{2 * len(natives)} of natives, {frames.total} of local variables"

@@ -65,8 +65,8 @@ def tornillo(port: ScriptedPort, monkeypatch: pytest.MonkeyPatch) -> Tornillo:
     monkeypatch.setattr("tornillo.lathe.open_port", lambda *_arguments: port)
     monkeypatch.setattr("tornillo.commands.following.POLL_S", 0)
 
-    def run(*arguments: str | Path) -> Result:
-        return CliRunner().invoke(main, [str(argument) for argument in arguments])
+    def run(*arguments: str | Path, typed: str = "") -> Result:
+        return CliRunner().invoke(main, [str(argument) for argument in arguments], input=typed)
 
     return run
 

@@ -89,6 +89,8 @@ class ScriptedChip:
         self.protocol = PROTOCOL_VERSION
         self.firmware = (0, 1, 0)
         self.serial = b"T0000001"
+        self.ranges: dict[SettingId, tuple[int, int]] = {}
+        self.busy_at: SettingId | None = None
         self.unknown: set[Command] = set()
         self.refusals: dict[Command, bytes] = {}
         self.wrong_crc = False
@@ -270,11 +272,14 @@ class ScriptedChip:
         """SETTING_GET."""
         entry = SETTINGS[payload[0]]
         value = self.values[entry.id]
-        return RESPONSES[Command.SETTING_GET].pack(value, entry.minimum, entry.maximum)
+        low, high = self.ranges.get(entry.id, (entry.minimum, entry.maximum))
+        return RESPONSES[Command.SETTING_GET].pack(value, low, high)
 
     def do_setting_set(self, payload: bytes) -> bytes:
         """SETTING_SET."""
         number, value = Struct("<Bi").unpack(payload)
+        if number == self.busy_at:
+            raise refuse(ErrorCode.BUSY)
         self.values[SettingId(number)] = value
         return b""
 

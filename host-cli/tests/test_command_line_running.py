@@ -66,7 +66,8 @@ def test_ctrl_c_while_homing_stops_the_slides(tornillo: Tornillo, chip: Scripted
     result = tornillo("home")
     assert result.exit_code == 1
     assert "homing was stopped" in result.stderr
-    assert chip.executed[-1] is Command.STOP
+    assert Command.STOP in chip.executed
+    assert chip.status.state == State.IDLE
 
 
 def test_run_starts_the_part_of_that_name(tornillo: Tornillo, loaded: ScriptedChip) -> None:

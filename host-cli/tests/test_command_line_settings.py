@@ -30,27 +30,39 @@ def test_settings_are_listed_for_people_and_for_scripts(
     }
 
 
-def test_one_setting_is_printed_alone(tornillo: Tornillo) -> None:
-    assert tornillo("settings", "get", "zero_z").stdout == "-8000\n"
+def test_one_setting_is_printed_alone_and_explained_beside_it(tornillo: Tornillo) -> None:
+    result = tornillo("settings", "get", "zero_z")
+    assert result.stdout == "-8000\n"
+    assert result.stderr == "zero_z: machine Z of the part's front face, -32000 to 0 steps\n"
 
 
 def test_a_setting_is_changed_also_to_a_negative_value(
     tornillo: Tornillo, chip: ScriptedChip
 ) -> None:
     result = tornillo("settings", "set", "zero_z", "-7000")
-    assert (result.exit_code, result.stdout) == (0, "zero_z was -8000, is -7000 steps\n")
+    wanted = "zero_z was -8000, is -7000 steps (-32000 to 0 steps)\n"
+    assert (result.exit_code, result.stdout) == (0, wanted)
     assert chip.values[SettingId.ZERO_Z] == -7000
-    assert tornillo("settings", "set", "ESTOP_FITTED", "0").stdout.endswith("was 1, is 0\n")
+    assert tornillo("settings", "set", "ESTOP_FITTED", "0").stdout.endswith("is 0 (0 to 1)\n")
 
 
 def test_a_value_outside_its_range_is_refused_with_the_range(
     tornillo: Tornillo, chip: ScriptedChip
 ) -> None:
-    result = tornillo("settings", "set", "homing_repeats", "10")
+    result = tornillo("settings", "set", "home_rate", "10")
     assert result.exit_code == 1
-    assert "homing_repeats cannot be 10: it goes from 1 to 9\n" in result.stderr
-    assert "Try: choose a value in this range; now it is 3" in result.stderr
+    assert "home_rate cannot be 10 step/s: it goes from 20 to 4000 step/s\n" in result.stderr
+    assert "Try: choose a value in this range; now it is 800 step/s" in result.stderr
     assert Command.SETTING_SET not in chip.executed
+
+
+def test_a_refusal_of_the_lathe_names_the_setting_its_value_and_its_range(
+    tornillo: Tornillo, chip: ScriptedChip
+) -> None:
+    chip.refusals[Command.SETTING_SET] = bytes([ErrorCode.BUSY])
+    result = tornillo("settings", "set", "home_rate", "700")
+    assert result.exit_code == 1
+    assert "home_rate stays 800 step/s (20 to 4000 step/s): SETTING_SET was" in result.stderr
 
 
 @pytest.mark.parametrize(
@@ -67,8 +79,10 @@ def test_an_unknown_setting_is_refused_naming_the_nearest(
     assert remedy in result.stderr
 
 
-def test_a_value_that_is_no_number_is_wrong_usage(tornillo: Tornillo) -> None:
-    assert tornillo("settings", "set", "zero_z", "far").exit_code == 2
+def test_a_value_that_is_no_number_is_wrong_usage_and_told_the_range(tornillo: Tornillo) -> None:
+    result = tornillo("settings", "set", "zero_z", "far")
+    assert result.exit_code == 2
+    assert "far is no whole number; zero_z goes from -32000 to 0 steps" in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -137,7 +137,7 @@ def test_the_reference_parts_have_a_cone_and_both_kinds_of_arc() -> None:
 def test_the_marks_are_as_many_steps_apart_as_the_specimen_says() -> None:
     grooves = [entry for entry in load("three-marks")["operation"] if entry["type"] == "groove"]
     steps = [round(entry["z"][1] / STEP_MM) for entry in grooves]
-    assert [after - before for before, after in pairwise(steps)] == [1050, -950]
+    assert [after - before for before, after in pairwise(steps)] == [-1050, 950]
     assert {round(entry["z"][0] - entry["z"][1], 6) for entry in grooves} == {0.4}
 
 

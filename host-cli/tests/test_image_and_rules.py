@@ -146,7 +146,7 @@ def test_checking_tells_every_broken_rule_and_stops_at_senseless_stock() -> None
 def test_a_part_that_is_too_long_is_told_with_its_size() -> None:
     long = PartImage(HEADER, (TOOL, CUT, FACE, contour(100, 600, *[line(-1, 0)] * 500)))
     first = next(check(long, Scale("mm", MACHINE)))
-    assert (first.refusal, first.detail) == (Refusal.LENGTH, "2599 bytes, at most 1984")
+    assert (first.refusal, first.detail) == (Refusal.LENGTH, "2599 bytes, at most 2496")
 
 
 def describe(violation: Violation | None) -> object:

@@ -63,7 +63,7 @@ def test_the_committed_files_are_up_to_date() -> None:
 def test_a_stale_file_is_found_and_written_anew(checkout: Path, name: str) -> None:
     source = checkout / "firmware" / "link" / "protocol.toml"
     text = source.read_text(encoding="utf-8")
-    text = text.replace("part_slots = { value = 8", "part_slots = { value = 9")
+    text = text.replace("part_slots = { value = 12", "part_slots = { value = 9")
     text = text.replace("the lathe is moving", "the lathe moves")
     text = text.replace('version = "0.1.0"', 'version = "0.1.1"')
     source.write_text(text, encoding="utf-8")

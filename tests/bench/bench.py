@@ -7,6 +7,7 @@ import platform
 import sys
 from pathlib import Path
 
+from calibration_page import calibration_figures
 from link_figures import link_figures
 from measure import BenchError, Figures, command_line, cut_test_bar, sizes
 from motion_figures import motion_figures
@@ -23,6 +24,7 @@ def figures() -> Figures:
     """Everything that is measured, with the date and the computer."""
     # These run in copies of this process, which must not have a chip of its own yet.
     link, shapes, stops = link_figures(), shape_figures(), stop_figures()
+    calibration = calibration_figures()
     bar = cut_test_bar()
     motion = motion_figures()
     worst = max(bar["isr_worst_cycles"], motion["isr_worst_cycles"])
@@ -34,6 +36,7 @@ def figures() -> Figures:
         **bar,
         **link,
         **stops,
+        **calibration,
         **motion,
         **shapes,
         "isr_worst_cycles": worst,

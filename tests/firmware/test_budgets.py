@@ -13,7 +13,7 @@ from simulated.processes import on_a_new_chip
 from tornillo.protocol import PART_SLOTS, PART_UNIT, State
 
 SIZE_FILE = Path(__file__).parents[2] / "build" / "firmware" / "size.json"
-STORE_BEGIN, FLASH_SIZE = 0x7800, 0x8000
+STORE_BEGIN, FLASH_SIZE = 0x7400, 0x8000
 STACK_FIRST, STACK_LAST = 0x700, 0x7BF
 FSR1L, FSR1H = 0xFE1, 0xFE2
 

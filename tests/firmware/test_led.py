@@ -43,7 +43,7 @@ def about(milliseconds: float) -> object:
 @on_a_new_chip
 def test_after_a_reset_the_led_is_lit_for_two_seconds_and_then_blinks_slowly() -> None:
     bench = Bench()
-    bench.run(0.01)
+    bench.run(0.02)
     assert bench.chip.level(LED) == 1
     bench.chip.log_pins(LED)
     bench.run(5.0)

@@ -1,256 +1,141 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of states and events in firmware/lathe/machine.h, cell by cell."""
+"""The table of states and events, firmware/lathe/states.toml, cell by cell."""
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
+from typing import NamedTuple
 
 import pytest
+import state_table
 from simulated import little_pin
 from simulated.bench import Bench
+from simulated.effects import EFFECTS, Seen, moves
+from simulated.happenings import HAPPENINGS, answer_of
 from simulated.processes import branch, on_a_new_chip
+from simulated.situations import HOMED, MOVING, SITUATIONS, Walker
 from tornillo.link import Link
 from tornillo.protocol import Alarm, Axis, Command, ErrorCode, State
-from virtual_lathe.chip import Drive
-from virtual_lathe.machine import AxisName
 
-Outcome = tuple[ErrorCode, State, Alarm]
-OK, BUSY, NOT_HOMED, IN_ALARM, NOT_RUNNING = (
-    ErrorCode.OK,
-    ErrorCode.BUSY,
-    ErrorCode.NOT_HOMED,
-    ErrorCode.ALARM,
-    ErrorCode.NOT_RUNNING,
-)
-IDLE, HOMING, RUNNING, HOLD, ALARM, PAUSE, MOVING, TOUCHING = State
-NONE = Alarm.NONE
-#: Slower than the start rate: brakes from one step to the next.
-SLOW = 200
-
-# event -> what it does in the state; "button" events have no error code, so OK.
-TABLE: dict[str, dict[str, Outcome]] = {
-    "idle": {
-        "button run": (OK, RUNNING, NONE),
-        "button hold": (OK, IDLE, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (OK, HOMING, NONE),
-        "run": (OK, RUNNING, NONE),
-        "hold": (NOT_RUNNING, IDLE, NONE),
-        "resume": (NOT_RUNNING, IDLE, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, IDLE, NONE),
-        "jog": (OK, MOVING, NONE),
-        "goto": (OK, MOVING, NONE),
-        "touch": (OK, TOUCHING, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-    "not homed": {
-        "button run": (OK, HOMING, NONE),
-        "button hold": (OK, IDLE, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (OK, HOMING, NONE),
-        "run": (NOT_HOMED, IDLE, NONE),
-        "hold": (NOT_RUNNING, IDLE, NONE),
-        "resume": (NOT_RUNNING, IDLE, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, IDLE, NONE),
-        "jog": (OK, MOVING, NONE),
-        "goto": (NOT_HOMED, IDLE, NONE),
-        "touch": (NOT_HOMED, IDLE, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, IDLE, NONE),
-    },
-    "homing": {
-        "button run": (OK, HOMING, NONE),
-        "button hold": (OK, HOMING, NONE),
-        "button stop": (OK, ALARM, Alarm.STOPPED_HOMING),
-        "home": (BUSY, HOMING, NONE),
-        "run": (BUSY, HOMING, NONE),
-        "hold": (NOT_RUNNING, HOMING, NONE),
-        "resume": (NOT_RUNNING, HOMING, NONE),
-        "stop": (OK, ALARM, Alarm.STOPPED_HOMING),
-        "reset": (OK, HOMING, NONE),
-        "jog": (BUSY, HOMING, NONE),
-        "goto": (BUSY, HOMING, NONE),
-        "touch": (BUSY, HOMING, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-    },
-    "running": {
-        "button run": (OK, RUNNING, NONE),
-        "button hold": (OK, HOLD, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (BUSY, RUNNING, NONE),
-        "run": (BUSY, RUNNING, NONE),
-        "hold": (OK, HOLD, NONE),
-        "resume": (OK, RUNNING, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, RUNNING, NONE),
-        "jog": (BUSY, RUNNING, NONE),
-        "goto": (BUSY, RUNNING, NONE),
-        "touch": (BUSY, RUNNING, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-    "hold": {
-        "button run": (OK, RUNNING, NONE),
-        "button hold": (OK, HOLD, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (BUSY, HOLD, NONE),
-        "run": (BUSY, HOLD, NONE),
-        "hold": (OK, HOLD, NONE),
-        "resume": (OK, RUNNING, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, HOLD, NONE),
-        "jog": (BUSY, HOLD, NONE),
-        "goto": (BUSY, HOLD, NONE),
-        "touch": (BUSY, HOLD, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-    "pause": {
-        "button run": (OK, RUNNING, NONE),
-        "button hold": (OK, PAUSE, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (BUSY, PAUSE, NONE),
-        "run": (BUSY, PAUSE, NONE),
-        "hold": (NOT_RUNNING, PAUSE, NONE),
-        "resume": (OK, RUNNING, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, PAUSE, NONE),
-        "jog": (BUSY, PAUSE, NONE),
-        "goto": (BUSY, PAUSE, NONE),
-        "touch": (BUSY, PAUSE, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-    "moving": {
-        "button run": (OK, MOVING, NONE),
-        "button hold": (OK, IDLE, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (BUSY, MOVING, NONE),
-        "run": (BUSY, MOVING, NONE),
-        "hold": (OK, IDLE, NONE),
-        "resume": (NOT_RUNNING, MOVING, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, MOVING, NONE),
-        "jog": (BUSY, MOVING, NONE),
-        "goto": (BUSY, MOVING, NONE),
-        "touch": (BUSY, MOVING, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-    "touching": {
-        "button run": (OK, TOUCHING, NONE),
-        "button hold": (OK, TOUCHING, NONE),
-        "button stop": (OK, IDLE, NONE),
-        "home": (BUSY, TOUCHING, NONE),
-        "run": (BUSY, TOUCHING, NONE),
-        "hold": (NOT_RUNNING, TOUCHING, NONE),
-        "resume": (NOT_RUNNING, TOUCHING, NONE),
-        "stop": (OK, IDLE, NONE),
-        "reset": (OK, TOUCHING, NONE),
-        "jog": (BUSY, TOUCHING, NONE),
-        "goto": (BUSY, TOUCHING, NONE),
-        "touch": (BUSY, TOUCHING, NONE),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-    "alarm": {
-        "button run": (OK, ALARM, Alarm.LIMIT),
-        "button hold": (OK, ALARM, Alarm.LIMIT),
-        "button stop": (OK, IDLE, NONE),
-        "home": (IN_ALARM, ALARM, Alarm.LIMIT),
-        "run": (IN_ALARM, ALARM, Alarm.LIMIT),
-        "hold": (NOT_RUNNING, ALARM, Alarm.LIMIT),
-        "resume": (NOT_RUNNING, ALARM, Alarm.LIMIT),
-        "stop": (OK, ALARM, Alarm.LIMIT),
-        "reset": (OK, IDLE, NONE),
-        "jog": (IN_ALARM, ALARM, Alarm.LIMIT),
-        "goto": (IN_ALARM, ALARM, Alarm.LIMIT),
-        "touch": (IN_ALARM, ALARM, Alarm.LIMIT),
-        "estop": (OK, ALARM, Alarm.ESTOP),
-        "limit": (OK, ALARM, Alarm.LIMIT),
-    },
-}
+TABLE = state_table.load()
+BUSY, IDLE = ErrorCode.BUSY, State.IDLE
 
 
-def lathe_in(state: str) -> Bench:
-    """Bring a lathe into a row of the table."""
-    bench = little_pin.lathe_with_pin(start_x=-250 if state == "homing" else -30, probe=True)
-    bench.set(probe_fitted=1)
-    if state == "not homed":
-        return bench
-    if state == "homing":
-        bench.host.home()
-        bench.run(0.05)
-        return bench
-    bench.home()
-    if state == "moving":
-        bench.host.jog(Axis.X, -60, SLOW)
-    if state == "touching":
-        bench.host.touch(Axis.X, -80)
-    if state == "pause":
-        bench.host.upload(little_pin.image("pausing", (little_pin.pause(), *little_pin.OPERATIONS)))
-        bench.host.run()
-        bench.wait_for(PAUSE)
-    if state in ("running", "hold"):
-        bench.host.run()
-        bench.run(0.2)
-    if state == "hold":
-        bench.host.hold()
-    if state == "alarm":
-        trip_limit(bench)
-    return bench
+class Outcome(NamedTuple):
+    """What came of an event: answer, state, alarm, whether the position is trusted."""
+
+    answer: ErrorCode
+    state: State
+    alarm: Alarm
+    homed: bool
 
 
-def trip_limit(bench: Bench) -> None:
-    """Break the wire of the X switch, which reads as pressed."""
-    bench.lathe.machine.break_switch_wire(AxisName.X)
-    bench.run(0.02)
+def expected(situation: str, event: str, before: Outcome) -> Outcome:
+    """Return what a cell promises."""
+    cell = TABLE.events[event].cells[situation]
+    if cell.alarm:
+        return Outcome(ErrorCode.OK, State.ALARM, Alarm[cell.alarm], False)
+    if cell.then:
+        state = State[TABLE.situations[cell.then].state.upper()]
+        return Outcome(ErrorCode.OK, state, Alarm.NONE, cell.then in HOMED)
+    answer = ErrorCode[cell.refused] if cell.refused else ErrorCode.OK
+    return before._replace(answer=answer)
 
 
-def happen(bench: Bench, event: str) -> ErrorCode:
-    """Let an event happen and return the answer to it."""
-    kind, _, button = event.partition(" ")
-    if kind == "button":
-        bench.press(button)
-    elif kind == "estop":
-        bench.chip.drive("RD7", Drive.OPEN)
-        bench.run(0.02)
-    elif kind == "limit":
-        trip_limit(bench)
-    else:
-        commands: dict[str, Callable[[], None]] = {
-            "home": bench.host.home,
-            "run": bench.host.run,
-            "hold": bench.host.hold,
-            "resume": bench.host.resume,
-            "stop": bench.host.stop,
-            "reset": bench.host.reset,
-            "jog": lambda: bench.host.jog(Axis.X, -60, SLOW),
-            "goto": lambda: bench.host.goto(x=-80, rate=SLOW),
-            "touch": lambda: bench.host.touch(Axis.X, -80),
-        }
-        return bench.refusal(commands[kind])
-    return OK
+def walk(walker: Walker, situation: str, event: str, moved: bool) -> str:
+    """Let an event happen; return what is wrong, empty when the cell is right."""
+    bench = walker.bench
+    cell = TABLE.events[event].cells[situation]
+    before = Seen.now(bench)
+    there = Outcome(ErrorCode.OK, bench.state, bench.alarm[0], bench.homed)
+    answer = answer_of(HAPPENINGS[event], walker)
+    bench.run(0.01)
+    found = Outcome(answer, bench.state, bench.alarm[0], bench.homed)
+    wanted = expected(situation, event, there)
+    if found != wanted:
+        return f"{found}, not {wanted}"
+    try:
+        EFFECTS[cell.action](walker, before, moved)
+    except AssertionError:
+        return f"not what {cell.action or cell.refused!r} means: {traceback.format_exc()}"
+    return ""
 
 
-@pytest.mark.parametrize("state", TABLE)
+@pytest.mark.parametrize("situation", TABLE.situations)
 @on_a_new_chip
-def test_every_event_does_what_the_table_says(state: str) -> None:
-    bench = lathe_in(state)
+def test_every_event_does_what_its_cell_says(situation: str) -> None:
+    walker = SITUATIONS[situation]()
+    bench = walker.bench
+    assert bench.state is State[TABLE.situations[situation].state.upper()]
+    assert bench.homed == (situation in HOMED)
+    moved = branch(partial(moves, bench))
+    assert moved == (situation in MOVING)
+    found = {
+        event: branch(partial(walk, walker, situation, event, moved)) for event in TABLE.events
+    }
+    wrong = [f"{event}: {text}" for event, text in found.items() if text]
+    assert not wrong, "\n".join(wrong)
 
-    def outcome(event: str) -> Outcome:
-        answer = happen(bench, event)
-        bench.run(0.01)
-        assert bench.homed == (bench.alarm[0] is NONE and bench.state is not HOMING and homed)
-        return answer, bench.state, bench.alarm[0]
 
-    homed = bench.homed
-    found = {event: branch(partial(outcome, event)) for event in TABLE[state]}
-    assert found == TABLE[state]
+def test_the_table_has_every_command_and_every_state_and_nothing_else() -> None:
+    commands = {name for name, event in TABLE.events.items() if event.kind == "command"}
+    assert commands == {command.name.lower() for command in Command}
+    states = {situation.state for situation in TABLE.situations.values()}
+    assert states == {state.name.lower() for state in State}
+    for event in TABLE.events.values():
+        for cell in event.cells.values():
+            assert not cell.refused or cell.refused in ErrorCode.__members__
+            assert not cell.alarm or cell.alarm in Alarm.__members__
+
+
+def test_every_row_column_and_action_of_the_table_can_be_walked() -> None:
+    assert set(TABLE.events) == set(HAPPENINGS)
+    assert set(TABLE.situations) == set(SITUATIONS)
+    used = {cell.action for event in TABLE.events.values() for cell in event.cells.values()}
+    assert used == set(EFFECTS)
+
+
+@pytest.mark.parametrize(
+    ("text", "cell"),
+    [
+        ("-", state_table.Cell("-")),
+        ("BUSY", state_table.Cell("", refused="BUSY")),
+        ("seek -> homing", state_table.Cell("seek", then="homing")),
+        ("freeze -> alarm LIMIT", state_table.Cell("freeze", alarm="LIMIT")),
+    ],
+)
+def test_a_cell_of_the_table_is_read(text: str, cell: state_table.Cell) -> None:
+    assert state_table.Cell.parse(text) == cell
+
+
+@pytest.mark.parametrize("text", ["", "Busy", "BUSY -> idle", "seek ->", "seek -> ALARM", "a b"])
+def test_what_is_no_cell_is_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="is no cell"):
+        state_table.Cell.parse(text)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('idle = "seek -> homing", ', ""),
+        ('idle = "seek -> homing"', 'idle = "seek -> humming"'),
+        ('idle = "seek -> homing"', 'idle = "leap -> homing"'),
+        ('kind = "input"', 'kind = "inputs"'),
+        ("[action]", '[action]\nunused = "by nobody"'),
+    ],
+)
+def test_a_table_with_a_hole_or_an_unknown_name_is_refused(
+    tmp_path: Path, old: str, new: str
+) -> None:
+    text = state_table.SOURCE.read_text(encoding="utf-8")
+    assert old in text
+    path = tmp_path / "states.toml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    with pytest.raises(ValueError, match=r"event home|event limit_x|no cell has"):
+        state_table.load(path)
 
 
 @on_a_new_chip

@@ -55,7 +55,7 @@ def speed(bench: Bench, seconds: float) -> float:
     bench.run(seconds)
     times = [cycle for cycle, _ in bench.chip.pin_changes()]
     intervals = [after - time for time, after in pairwise(times)]
-    assert max(intervals) - min(intervals) <= 1
+    assert max(intervals) - min(intervals) <= 2  # each step may be a cycle late
     return CYCLES_PER_SECOND / statistics.fmean(intervals)
 
 

@@ -19,7 +19,7 @@ from virtual_lathe.chip import NonVolatile
 
 EVERY = [f"part-{number:02}" for number in range(1, PART_SLOTS + 1)]
 EIGHT = EVERY[:8]
-STORE_BEGIN, UNIT_HEADER = 0x7800, 64
+STORE_BEGIN, UNIT_HEADER = 0x7400, 64
 
 
 def names(bench: Bench) -> list[str]:

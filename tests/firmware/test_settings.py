@@ -9,7 +9,9 @@ from simulated.bench import Bench
 from simulated.processes import branch, on_a_new_chip
 from tornillo.frames import crc16
 from tornillo.link import Link
+from tornillo.machine_file import file_text, load_file, read_file
 from tornillo.protocol import SETTINGS, Alarm, Axis, Command, ErrorCode, SettingId, State
+from tornillo.settings import store_all
 from virtual_lathe.chip import NonVolatile
 
 FIRST, SECOND = 0x00, 0x70
@@ -97,6 +99,21 @@ def test_settings_stay_over_power_cycles_and_many_changes() -> None:
         bench.set(home_rate=500 + round_number, zero_z=-7000 - round_number)
         bench.power_cycle(round_number)
         assert values(bench) == defaults(home_rate=500 + round_number, zero_z=-7000 - round_number)
+
+
+@on_a_new_chip
+def test_a_saved_machine_file_brings_every_setting_back() -> None:
+    bench = Bench()
+    changed = {setting.id: setting.minimum for setting in SETTINGS}
+    changes = store_all(bench.host, changed, lambda _change: None)
+    assert len(changes) == sum(setting.minimum != setting.default for setting in SETTINGS)
+    assert values(bench) == changed
+    text = file_text(values(bench), "changed", "test")
+    store_all(bench.host, load_file("otmt-co"), lambda _change: None)
+    assert values(bench) == defaults()
+    store_all(bench.host, read_file(text, "changed"), lambda _change: None)
+    bench.power_cycle()
+    assert values(bench) == changed
 
 
 @on_a_new_chip

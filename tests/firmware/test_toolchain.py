@@ -174,7 +174,7 @@ def test_every_section_belongs_to_a_room(section: str, source: str, owner: str) 
 @pytest.fixture
 def build(tmp_path: Path) -> Path:
     """A copy of what the linker has left behind."""
-    for name in ("tornillo.hex", "tornillo.map", "shrink.txt"):
+    for name in ("tornillo.hex", "tornillo.map", "shrink.txt", "byte_code.json"):
         shutil.copy(ROOT / "build" / "firmware" / name, tmp_path)
     return tmp_path
 

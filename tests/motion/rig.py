@@ -228,7 +228,7 @@ class Rig:
         self.host.unplug()
         self.chip.reset(Reset.MCLR)
         self._resets = len(self.chip.resets)
-        if not self.chip.run_to_address(self.symbols.code("machine_apply_settings")):
+        if not self.chip.run_to_address(self.symbols.code("path_configure")):
             raise MotionFault("the firmware does not take its settings into use")
         base = self.symbols.ram("settings")
         for name, value in self._settings.items():

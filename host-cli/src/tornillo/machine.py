@@ -4,15 +4,13 @@
 The lathe tells it itself (HELLO); without a lathe it comes from a machine file.
 """
 
-import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.resources import files
-from importlib.resources.abc import Traversable
-from pathlib import Path
 
 from tornillo.errors import MachineError
 from tornillo.language import _
-from tornillo.protocol import HelloData
+from tornillo.machine_file import load_file
+from tornillo.protocol import HelloData, SettingId
 
 DEFAULT_MACHINE = "otmt-co"
 
@@ -62,45 +60,31 @@ class Machine:
 
         Raises MachineError when it does not exist or lacks something.
         """
-        known = _shipped()
-        path: Traversable = Path(name) if name.endswith(".toml") else known / f"{name}.toml"
-        try:
-            values = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-            names = ", ".join(sorted(entry.name.removesuffix(".toml") for entry in known.iterdir()))
-            raise MachineError(
-                _("machine {name}: {error}").format(name=name, error=error),
-                _("use one of {names}, or the path of a machine file").format(names=names),
-            ) from error
+        return cls.from_settings(load_file(name), name)
+
+    @classmethod
+    def from_settings(cls, values: Mapping[SettingId, int], name: str) -> "Machine":
+        """The machine with these settings; raises MachineError when it lacks one."""
+
+        def value(setting: SettingId) -> int:
+            if setting not in values:
+                raise MachineError(
+                    _("machine {name}: [settings] {setting} is missing").format(
+                        name=name, setting=setting.name.lower()
+                    ),
+                    _("write a whole file with `tornillo settings save FILE`"),
+                )
+            return values[setting]
+
         return cls(
             name=name,
-            step_x_nm=_whole(values, name, "step", "x_nm"),
-            step_z_nm=_whole(values, name, "step", "z_nm"),
-            travel_x=_whole(values, name, "travel", "x_steps"),
-            travel_z=_whole(values, name, "travel", "z_steps"),
-            zero_x=_whole(values, name, "part_zero", "x_steps"),
-            zero_z=_whole(values, name, "part_zero", "z_steps"),
-            max_rate=_whole(values, name, "rate", "feed_max_steps_s"),
-            spindle_min_rpm=_whole(values, name, "spindle", "min_rpm"),
-            spindle_max_rpm=_whole(values, name, "spindle", "max_rpm"),
+            step_x_nm=value(SettingId.STEP_X_NM),
+            step_z_nm=value(SettingId.STEP_Z_NM),
+            travel_x=value(SettingId.TRAVEL_X),
+            travel_z=value(SettingId.TRAVEL_Z),
+            zero_x=value(SettingId.ZERO_X),
+            zero_z=value(SettingId.ZERO_Z),
+            max_rate=min(value(SettingId.RAPID_RATE_X), value(SettingId.RAPID_RATE_Z)),
+            spindle_min_rpm=value(SettingId.SPINDLE_MIN),
+            spindle_max_rpm=value(SettingId.SPINDLE_MAX),
         )
-
-
-def _shipped() -> Traversable:
-    """The folder of machine files: in the package, or beside it in a source checkout."""
-    packaged = files("tornillo") / "machines"
-    return packaged if packaged.is_dir() else Path(__file__).resolve().parents[2] / "machines"
-
-
-def _whole(values: dict[str, object], name: str, table: str, key: str) -> int:
-    """A whole number of a machine file."""
-    section = values.get(table)
-    value = section.get(key) if isinstance(section, dict) else None
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise MachineError(
-            _("machine {name}: [{table}] {key} must be a whole number").format(
-                name=name, table=table, key=key
-            ),
-            _("copy machines/otmt-co.toml and change its numbers"),
-        )
-    return value

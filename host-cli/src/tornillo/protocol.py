@@ -19,14 +19,14 @@ FRAME_RESPONSE_BIT = 0x80
 CRC16_POLYNOMIAL = 0x1021
 CRC16_INITIAL = 0xFFFF
 CRC16_CHECK = 0x29B1
-#: units of the part store; a part takes one to eight, its slot is the first
-PART_SLOTS = 8
+#: units of the part store; a part takes one to ten, its slot is the first
+PART_SLOTS = 12
 #: bytes of one unit, 64 of them for its header when it is a part's first
 PART_UNIT = 256
 #: no slot; in RUN: the selected part
 SLOT_NONE = 255
 #: bytes of a part image
-PART_IMAGE_MAX = 1984
+PART_IMAGE_MAX = 2496
 #: bytes of one UPLOAD_DATA or PART_READ piece
 UPLOAD_PIECE_MAX = 32
 #: operations of one part
@@ -145,7 +145,6 @@ class Alarm(IntEnum):
     SETTINGS_LOST = 7
     STOPPED_HOMING = 8
     DEAD_STEPS_SPREAD = 9
-    INTERNAL = 10
     PATH = 11
     SWITCH_WIRING = 14
     PROBE_UNEXPECTED = 15

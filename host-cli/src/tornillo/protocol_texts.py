@@ -145,10 +145,6 @@ ALARM_TEXTS = {
         "the dead steps came out differently each time they were measured",
         "check for a loose screw, nut, coupling or switch, reset, then home again",
     ),
-    Alarm.INTERNAL: Explanation(
-        "the firmware found itself in a state that cannot be",
-        "reset; please report it with the output of `tornillo status --json`",
-    ),
     Alarm.PATH: Explanation(
         "an arc whose centre does not fit its ends",
         "reset and home again; please report it with the part file",

@@ -47,6 +47,7 @@ SECTIONS: dict[str, dict[str, Verb]] = {
     },
     "Setting up": {
         "doctor": Verb("doctor", "Check port, firmware, settings, switches and buttons."),
+        "calibrate": Verb("calibrate", "Measure dead steps, switch travel and step size."),
         "settings": Verb("settings", "List, read or change the settings of the lathe."),
         "serial": Verb("system", "Show or change the serial number."),
         "udev": Verb("system", "Print or install the udev rule for Linux."),

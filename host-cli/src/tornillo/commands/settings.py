@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Verbs that change what the chip remembers about the machine: settings, zero."""
 
-import difflib
 import math
+from pathlib import Path
 
 import click
 
@@ -10,7 +10,11 @@ from tornillo.commands.completion import complete_settings
 from tornillo.commands.connection import connected, json_option, print_json, print_table
 from tornillo.errors import TornilloError
 from tornillo.language import _
-from tornillo.protocol import SETTINGS, Axis, Setting
+from tornillo.lathe import Lathe
+from tornillo.machine_file import file_text, load_file
+from tornillo.protocol import Axis
+from tornillo.setting_names import explained, named, span
+from tornillo.settings import Change, outdated_parts, store, store_all
 from tornillo.units import NM_PER_UNIT, Scale
 
 units_option = click.option(
@@ -26,12 +30,14 @@ units_option = click.option(
 @json_option
 @click.pass_context
 def settings(context: click.Context, as_json: bool) -> None:
-    """List the settings of the lathe, or get or set one.
+    """List the settings of the lathe, get or set one, save or load all.
 
     \b
     Examples: tornillo settings
               tornillo settings get zero_z
               tornillo settings set rapid_rate_x 900
+              tornillo settings save my-lathe.toml
+              tornillo settings load my-lathe.toml
     """
     if context.invoked_subcommand is not None:
         return
@@ -57,61 +63,105 @@ def settings(context: click.Context, as_json: bool) -> None:
 @settings.command("get")
 @click.argument("name", shell_complete=complete_settings)
 def get_setting(name: str) -> None:
-    """Print the value of NAME alone.
+    """Print the value of NAME alone; meaning, range and unit go to stderr.
 
     \b
     Example: tornillo settings get travel_z
     """
-    entry = _named(name)
+    entry = named(name)
     with connected() as lathe:
-        click.echo(lathe.setting(entry.id).value)
+        told = lathe.setting(entry.id)
+    click.echo(told.value)
+    click.echo(explained(entry, told), err=True)
 
 
 @settings.command("set", context_settings={"ignore_unknown_options": True})
 @click.argument("name", shell_complete=complete_settings)
-@click.argument("value", type=int)
-def set_setting(name: str, value: int) -> None:
-    """Change NAME to VALUE and store it in the lathe.
+@click.argument("value")
+def set_setting(name: str, value: str) -> None:
+    """Change NAME to VALUE, a whole number, and store it in the lathe.
 
     \b
     Example: tornillo settings set rapid_rate_x 900
     """
-    entry = _named(name)
+    entry = named(name)
+    try:
+        number = int(value)
+    except ValueError as error:
+        raise click.BadParameter(
+            _("{value} is no whole number; {id} goes from {entry}").format(
+                value=value, id=entry.id.name.lower(), entry=span(entry)
+            ),
+            param_hint="VALUE",
+        ) from error
     with connected() as lathe:
-        now = lathe.setting(entry.id)
-        if not now.minimum <= value <= now.maximum:
-            raise TornilloError(
-                _("{name} cannot be {value}: it goes from {minimum} to {maximum} {unit}")
-                .format(
-                    name=name,
-                    value=value,
-                    minimum=now.minimum,
-                    maximum=now.maximum,
-                    unit=entry.unit,
-                )
-                .rstrip(),
-                _("choose a value in this range; now it is {now}").format(now=now.value),
-            )
-        lathe.set_setting(entry.id, value)
-    click.echo(
-        _("{name} was {now}, is {value} {unit}")
-        .format(name=name, now=now.value, value=value, unit=entry.unit)
-        .rstrip()
-    )
+        change = store(lathe, entry, number)
+        click.echo(change)
+        _warn_of_parts(lathe, [change])
 
 
-def _named(name: str) -> Setting:
-    """The setting called `name`; raises TornilloError with the nearest name."""
-    known = {entry.id.name.lower(): entry for entry in SETTINGS}
-    if name.lower() not in known:
-        close = difflib.get_close_matches(name.lower(), known, n=1)
-        remedy = (
-            _('did you mean "{close}"?').format(close=close[0])
-            if close
-            else _("see `tornillo settings`")
+@settings.command("save")
+@click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
+@click.option("--force", is_flag=True, help="Write over FILE when it is there.")
+def save_settings(file: Path, force: bool) -> None:
+    """Write all settings of the lathe to the machine file FILE.
+
+    It is TOML with units and ranges. Every verb with --machine takes it, too.
+
+    \b
+    Example: tornillo settings save my-lathe.toml
+    """
+    if file.exists() and not force:
+        raise TornilloError(
+            _("{file} is there already").format(file=file), _("name another file, or add --force")
         )
-        raise TornilloError(_('there is no setting "{name}"').format(name=name), remedy)
-    return known[name.lower()]
+    with connected() as lathe:
+        values = {entry.id: data.value for entry, data in lathe.settings()}
+        source = _("read from lathe {serial_number}, firmware {firmware}").format(
+            serial_number=lathe.serial_number, firmware=lathe.firmware
+        )
+    try:
+        file.write_text(file_text(values, file.stem, source), encoding="utf-8")
+    except OSError as error:
+        raise TornilloError(
+            _("cannot write {file}: {error}").format(file=file, error=error),
+            _("choose another place"),
+        ) from error
+    click.echo(_("{values} settings saved in {file}").format(values=len(values), file=file))
+
+
+@settings.command("load")
+@click.argument("file")
+def load_settings(file: str) -> None:
+    """Store the settings of the machine file FILE in the lathe.
+
+    The whole file is checked first. Settings that it does not name stay, and only those that differ
+    are written. FILE is a path ending in .toml or a machine that comes with tornillo.
+
+    \b
+    Example: tornillo settings load my-lathe.toml
+    """
+    values = load_file(file)
+    with connected() as lathe:
+        changes = store_all(lathe, values, click.echo)
+        click.echo(
+            _("{values} settings of {file}: {changes} changed and stored").format(
+                values=len(values), file=file, changes=len(changes)
+            )
+        )
+        _warn_of_parts(lathe, changes)
+
+
+def _warn_of_parts(lathe: Lathe, changes: list[Change]) -> None:
+    """Name the parts that a changed step size makes useless."""
+    names = outdated_parts(lathe, changes)
+    if names:
+        click.echo(
+            _("made for another step size, refused until uploaded again: {names}").format(
+                names=", ".join(names)
+            ),
+            err=True,
+        )
 
 
 @click.group()

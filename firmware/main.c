@@ -70,10 +70,11 @@ void low_interrupt(void) __interrupt(2)
     }
     if (PIR1 & PIR1_TMR2IF) {
         PIR1 &= (uint8_t)~PIR1_TMR2IF;
+        inputs_read();
         tick_count();
+        usb_tick();
         inputs_tick();
         guard_tick();
-        usb_tick();
     }
 }
 

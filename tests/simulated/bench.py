@@ -166,6 +166,12 @@ class Bench:
         self.chip.fill_ram(seed)
         self.chip.reset(Reset.POWER_ON)
 
+    def exchange_screw(self, axis: Axis, dead: int, switch_travel: int) -> None:
+        """Give an axis other dead steps and another switch; no power. The slide goes near to it."""
+        options = self.lathe.machine.options(AxisName(int(axis)))
+        options.backlash, options.slack, options.switch_travel = dead, 0, switch_travel
+        self.lathe.machine.place(AxisName(int(axis)), NEAR.start_x)
+
     def refusal(self, action: Callable[[], object]) -> ErrorCode:
         """The error code the chip answers an action with; OK when it does it."""
         try:

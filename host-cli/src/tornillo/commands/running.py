@@ -7,8 +7,9 @@ import click
 
 from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.commands.following import describe, follow_homing, follow_run, pause_message
+from tornillo.errors import ChipError, TornilloError
 from tornillo.lathe import Lathe
-from tornillo.protocol import Axis, State, StatusFlag
+from tornillo.protocol import Axis, ErrorCode, HomedAxis, ProgressData, State, StatusFlag
 from tornillo.protocol_texts import ALARM_TEXTS
 from tornillo.status import Status
 
@@ -17,37 +18,89 @@ follow_option = click.option("--follow", is_flag=True, help="Show the progress u
 
 
 @click.command()
-def home() -> None:
+@click.option(
+    "--axis",
+    type=click.Choice([axis.name.lower() for axis in Axis]),
+    help="This axis alone; the other one stays where it is.",
+)
+def home(axis: str | None) -> None:
     """Find the limit switches and measure the dead steps; waits for the end.
 
-    Ctrl-C stops the slides.
+    Ctrl-C stops the slides. It is told when the dead steps have changed since the last homing.
 
     \b
-    Example: tornillo home
+    Examples: tornillo home
+              tornillo home --axis z
     """
+    axes = HomedAxis.X | HomedAxis.Z if axis is None else HomedAxis[axis.upper()]
     with connected() as lathe:
-        lathe.home()
-        click.echo("homing, X first; Ctrl-C stops", err=True)
+        lathe.home(axes)
+        what = "X first" if axis is None else f"{axis.upper()} alone"
+        click.echo(f"homing, {what}; Ctrl-C stops", err=True)
         status = follow_homing(lathe)
-    click.echo(f"homed; dead steps: X {status.dead_x}, Z {status.dead_z}")
+    click.echo(f"homed; {_dead_steps(status, axes)}")
+    for line in status.advice:
+        click.secho(f"Warning: {line}", fg="yellow", err=True)
+
+
+def _dead_steps(status: Status, axes: HomedAxis) -> str:
+    """What homing has found of some axes."""
+    found = {
+        HomedAxis.X: (status.dead_x, status.spread_x),
+        HomedAxis.Z: (status.dead_z, status.spread_z),
+    }
+    some = {axis.name: found[axis] for axis in HomedAxis if axis in axes}
+    dead = ", ".join(f"{name} {steps}" for name, (steps, _) in some.items())
+    spread = ", ".join(f"{name} {steps}" for name, (_, steps) in some.items())
+    return f"dead steps: {dead}; spread: {spread}"
 
 
 @click.command()
 @click.argument("part", required=False)
 @click.option("--step", is_flag=True, help="Pause after each operation.")
+@click.option("--resume", is_flag=True, help="Go on with the part that was not finished.")
 @follow_option
-def run(part: str | None, step: bool, follow: bool) -> None:
+def run(part: str | None, step: bool, resume: bool, follow: bool) -> None:
     """Cut PART (name or slot), or the selected part.
 
     With --follow, Ctrl-C holds the run. A pause waits for the RUN button or `tornillo resume`.
 
+    After a power cut, a stop or an alarm: home, then --resume. It goes on from the pass that was
+    completed last; what was cut before is left out. The tool must be the one of that moment.
+
     \b
-    Example: tornillo run test-bar --follow
+    Examples: tornillo run test-bar --follow
+              tornillo run --resume --follow
     """
     with connected() as lathe:
         slot = None if part is None else lathe.find(part).slot
-        lathe.run(slot, step)
+        try:
+            lathe.run(slot, step, resume)
+        except ChipError as error:
+            if error.code is ErrorCode.INVALID_PART:
+                _refuse_outdated(lathe)
+            raise
+        begun = lathe.progress() if resume else None
+        if begun is not None:
+            click.echo(f"going on behind {_completed(begun)}", err=True)
         _started(lathe, follow)
+
+
+def _refuse_outdated(lathe: Lathe) -> None:
+    """Raise TornilloError when the selected or another part was made for other screws."""
+    names = ", ".join(part.name for part in lathe.outdated_parts())
+    if names:
+        raise TornilloError(
+            f"the step size was changed since these parts were stored: {names}",
+            "upload them again, so that they fit the screws",
+        )
+
+
+def _completed(begun: ProgressData) -> str:
+    """How far a part came."""
+    if begun.pass_number == 0:
+        return f"operation {begun.operation}"
+    return f"operation {begun.operation}, pass {begun.pass_number}"
 
 
 @click.command()
@@ -136,11 +189,12 @@ def status(as_json: bool) -> None:
     """
     with connected() as lathe:
         now = lathe.status()
+        begun = lathe.progress()
         names = {part.slot: part.name for part in lathe.parts()}
         if as_json:
-            print_json(_as_json(lathe, now, names))
+            print_json(_as_json(lathe, now, begun, names))
             return
-        rows = _as_rows(lathe, now, names)
+        rows = _as_rows(lathe, now, begun, names)
     width = max(len(name) for name in rows)
     for name, value in rows.items():
         click.echo(f"{name:<{width}}  {value}")
@@ -153,7 +207,9 @@ def _position_mm(lathe: Lathe, now: Status) -> tuple[float, float]:
     return 2 * radius, (now.z - hello.zero_z) * hello.step_z_nm / NM_PER_MM
 
 
-def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, object]:
+def _as_json(
+    lathe: Lathe, now: Status, begun: ProgressData | None, names: dict[int, str]
+) -> dict[str, object]:
     """Everything known, for scripts."""
     diameter, z = _position_mm(lathe, now)
     values = dataclasses.asdict(now)
@@ -163,12 +219,15 @@ def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, obje
     values["reset_cause"] = now.reset_cause.name
     values["flags"] = [flag.name for flag in now.flags]
     values["inputs"] = [flag.name for flag in now.inputs]
+    values["homed_axes"] = [axis.name for axis in now.homed_axes]
+    values["warnings"] = [warning.name for warning in now.warnings]
     return {
         **values,
         "homed": now.homed,
         "finished": now.finished,
         "message": pause_message(lathe, now) if now.state is State.PAUSE else None,
         "part": names.get(-1 if now.slot is None else now.slot),
+        "unfinished": None if begun is None else begun._asdict(),
         "part_diameter_mm": round(diameter, 4),
         "part_z_mm": round(z, 4),
         "firmware": lathe.firmware,
@@ -176,7 +235,9 @@ def _as_json(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, obje
     }
 
 
-def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]:
+def _as_rows(
+    lathe: Lathe, now: Status, begun: ProgressData | None, names: dict[int, str]
+) -> dict[str, str]:
     """What a person wants to know."""
     rows = {"state": now.state.name.lower()}
     if now.state is State.ALARM:
@@ -185,13 +246,23 @@ def _as_rows(lathe: Lathe, now: Status, names: dict[int, str]) -> dict[str, str]
         diameter, z = _position_mm(lathe, now)
         rows["tool"] = f"diameter {diameter:.3f} mm, z {z:.3f} mm"
     else:
-        rows["tool"] = "unknown: not homed"
+        some = f", only {now.homed_axes.name}" if now.homed_axes else ""
+        rows["tool"] = f"unknown: not homed{some}"
     rows["machine"] = f"X {now.x}, Z {now.z} steps"
-    rows["dead steps"] = f"X {now.dead_x}, Z {now.dead_z}"
+    rows["dead steps"] = (
+        f"X {now.dead_x}, Z {now.dead_z}; spread X {now.spread_x}, Z {now.spread_z}"
+    )
+    if now.warnings:
+        rows["warning"] = "; ".join(now.advice)
     if now.slot is not None:
         rows["part"] = f"{names.get(now.slot, '?')} (slot {now.slot})"
     if now.under_way:
         rows["progress"] = f"{now.permille / 10:.1f} %, {describe(now)}"
+    elif begun is not None:
+        name = names.get(begun.slot, "?")
+        rows["unfinished"] = (
+            f"{name}, completed up to {_completed(begun)}; home, then `tornillo run --resume`"
+        )
     if now.state is State.PAUSE:
         rows["waits for"] = f"{pause_message(lathe, now)}; go on with RUN or `tornillo resume`"
     pressed = [

@@ -38,7 +38,7 @@ virtual-lathe: firmware virtual-lathe-library ## run a virtual lathe; options in
 	@$(PYTHON) -m virtual_lathe $(ARGS)
 
 .PHONY: test
-test: firmware virtual-lathe-library ## all tests: host, firmware on the simulated chip, end to end
+test: firmware firmware-bus-powered virtual-lathe-library ## all tests: host, firmware on the simulated chip, end to end
 	@$(PYTHON) -m pytest --cov=tornillo --cov-branch --cov-report=term $(PYTEST_ARGS)
 
 .PHONY: test-kernel

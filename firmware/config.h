@@ -47,4 +47,18 @@
 /* Fast approach gives up after the travel and this many steps more. */
 #define HOMING_MARGIN_STEPS 400
 
+/* How far homing goes on to tell a switch that opens too late from one that
+   does not open, steps. Range 10..500. */
+#define LATE_MARGIN_STEPS 60
+#if LATE_MARGIN_STEPS < 10 || LATE_MARGIN_STEPS > 500
+#error "LATE_MARGIN_STEPS must be 10 to 500"
+#endif
+
+/* RUN held down for so long resumes a part, ms. Range 500..5000: longer than
+   anybody presses a button by habit. */
+#define LONG_PRESS_MS 1500
+#if LONG_PRESS_MS < 500 || LONG_PRESS_MS > 5000
+#error "LONG_PRESS_MS must be 500 to 5000 ms"
+#endif
+
 #endif

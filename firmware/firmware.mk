@@ -12,12 +12,13 @@ SDCC := $(SDCC_PREFIX)/bin/sdcc
 SDCC_FLAGS := -mpic16 -p$(CHIP) --no-warn-non-free --nostdlib --nostdinc \
   -I$(SDCC_PREFIX)/include/pic16 -I$(SDCC_PREFIX)/include -I$(FIRMWARE) \
   -Ifirmware --obanksel=9 --optimize-cmp --optimize-df --denable-peeps \
-  --fomit-frame-pointer
+  --fomit-frame-pointer $(OPTIONS)
 
 # What is in no hurry is compiled to byte code: half the size, ten times slower.
-BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/homing.c lathe/passes.c \
-  lathe/cuts.c lathe/manual.c lathe/part_check.c lathe/shape_check.c \
-  lathe/stroke.c link/commands.c store/parts.c store/settings.c)
+BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/buttons.c lathe/homing.c \
+  lathe/passes.c lathe/places.c lathe/progress.c lathe/cuts.c lathe/manual.c \
+  lathe/part_check.c lathe/shape_check.c lathe/stroke.c link/commands.c store/parts.c \
+  store/settings.c)
 BYTE_I := $(BYTE_C:firmware/%.c=$(OBJECTS)/%.i)
 FIRMWARE_C := $(filter-out $(BYTE_C),$(wildcard firmware/*.c firmware/*/*.c))
 FIRMWARE_ASM := $(wildcard firmware/*.asm firmware/*/*.asm)
@@ -30,6 +31,14 @@ BYTE_TOOLS := $(wildcard firmware/toolchain/*bytecode*.py)
 
 .PHONY: firmware
 firmware: $(FIRMWARE)/size.json ## build the firmware, print bytes per room
+
+# The same for a board that lives on the cable, see usb_config.h; for its tests.
+BUS_POWERED := build/bus-powered
+
+.PHONY: firmware-bus-powered
+firmware-bus-powered: | $(SETUP_STAMP)
+	@$(MAKE) -o setup -o $(SETUP_STAMP) FIRMWARE=$(BUS_POWERED) \
+	  OPTIONS="-DUSB_SELF_POWERED=0 -DUSB_BUS_CURRENT_MA=500" firmware
 
 $(FIRMWARE)/sfr.h $(FIRMWARE)/sfr.c &: firmware/toolchain/generate_sfr.py \
   | $(SETUP_STAMP)

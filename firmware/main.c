@@ -44,6 +44,7 @@
 #define RCON_IPEN 0x80
 #define INTCON_BOTH_LEVELS 0xC0
 #define PIR1_TMR2IF 0x02
+#define PIR2_TMR3IF 0x02 /* asked for by the step interrupt */
 #define PIR2_USBIF 0x20
 
 /* RCON: a bit that is 0 tells what happened. */
@@ -60,16 +61,20 @@ volatile uint8_t reset_stkptr;
 
 void low_interrupt(void) __interrupt(2)
 {
+    if (PIR2 & PIR2_TMR3IF) {
+        PIR2 &= (uint8_t)~PIR2_TMR3IF;
+        ramp_tick();
+    }
     if (PIR2 & PIR2_USBIF) {
         usb_service();
     }
     if (PIR1 & PIR1_TMR2IF) {
         PIR1 &= (uint8_t)~PIR1_TMR2IF;
+        inputs_read();
         tick_count();
+        usb_tick();
         inputs_tick();
         guard_tick();
-        ramp_tick();
-        usb_tick();
     }
 }
 

@@ -25,7 +25,7 @@ from babel.messages.pofile import read_po, write_po
 from tornillo.cli import main as command_line
 from tornillo.help_texts import messages
 from tornillo.protocol import SETTINGS, ResetCause, State
-from tornillo.protocol_texts import ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS
+from tornillo.protocol_texts import ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS, WARNING_TEXTS
 from tornillo.verbs import SECTIONS, VERBS
 
 SOURCE = Path(__file__).resolve().parent / "src" / "tornillo"
@@ -51,7 +51,7 @@ def wanted() -> set[Message]:
     found.update(SECTIONS)
     found.update(verb.summary for verb in VERBS.values())
     found.update(_help())
-    for texts in (ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS):
+    for texts in (ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS, WARNING_TEXTS):
         for text in texts.values():
             found.update((text.cause, text.remedy))
     found.update(setting.meaning for setting in SETTINGS)

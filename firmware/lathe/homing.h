@@ -19,8 +19,16 @@
  * Where the switch opens is machine zero: the release edge is the one that
  * repeats best.
  *
- * At the latch rate a step lasts longer than the input filter (4 ms), so the
- * stream is stopped before the next step and the count is exact.
+ * At the latch rate a step lasts longer than a switch bounces (5 ms) and the
+ * input filter takes (4 ms, 2 more for each sample hit by interference), so
+ * the stream is stopped before the next step and the count is exact.
+ *
+ * Where the screw stands at zero is compared with the homing before: by
+ * counting, if the position has been known since then, and else by the phase
+ * of the coils, which tells it but for multiples of four steps; without power
+ * too, because a rotor goes to the nearest place of the phase it is given.
+ * Step/direction outputs tell no phase. What was found is stored even when it
+ * is an alarm, so the next homing compares with it.
  *
  * Main loop only.
  */
@@ -29,17 +37,27 @@
 
 #include <stdint.h>
 
-/* Starts with X. */
-void homing_begin(void);
+/* Starts with X if it is one of the axes; of those that are known the
+   position has been trusted so far. Both: HOMED_AXIS_... */
+void homing_begin(uint8_t axes, uint8_t known);
 
 #define HOMING_DONE 0xFF
 
 /* Moves on when a phase has ended. Returns 0 while homing, HOMING_DONE when
-   both axes are parked, or the ALARM_... that ended it, with homing_axis as
+   all axes are parked, or the ALARM_... that ended it, with homing_axis as
    its detail. */
 uint8_t homing_poll(void);
 
 /* The axis being homed, AXIS_X or AXIS_Z. */
 extern uint8_t homing_axis;
+
+/* The axes given to homing_begin(). */
+extern uint8_t homing_axes;
+
+/* Largest less smallest count of the last homing by axis, at most 255. */
+extern uint8_t homing_spread[2];
+
+/* WARNING_...: the dead steps have changed since the homing before. */
+extern uint8_t homing_warnings;
 
 #endif

@@ -4,19 +4,20 @@
 #include "lathe/machine.h"
 #include "arithmetic.h"       /* proportions */
 #include "config.h"           /* shortest pulse */
+#include "lathe/buttons.h"    /* what they mean */
 #include "lathe/guard.h"      /* trips */
 #include "lathe/homing.h"     /* homing phases */
 #include "lathe/manual.h"     /* jog, goto, touch */
 #include "lathe/part.h"       /* number of operations */
 #include "lathe/part_check.h" /* before every run */
 #include "lathe/passes.h"     /* moves of a part */
+#include "lathe/progress.h"   /* resuming */
 #include "lathe/stroke.h"     /* moves of homing and by hand */
 #include "link/protocol.h"    /* states, alarms, errors */
 #include "motion/path.h"      /* chains */
 #include "motion/ramp.h"      /* hold */
 #include "motion/stream.h"    /* freeze, positions */
 #include "panel/inputs.h"     /* buttons */
-#include "panel/led.h"        /* number of the selected part */
 #include "store/parts.h"      /* selected part */
 #include "store/settings.h"   /* settings */
 #include "tick.h"             /* idle time */
@@ -25,6 +26,7 @@ uint8_t machine_state;
 uint8_t machine_alarm;
 uint8_t machine_alarm_detail;
 uint8_t machine_homed;
+uint8_t machine_homed_axes;
 uint8_t machine_slot;
 
 static uint8_t finished;  /* the last run came to its end */
@@ -43,6 +45,13 @@ static void arm(void)
     guard_armed = inputs;
 }
 
+static void set_homed(uint8_t axes)
+{
+    machine_homed_axes = axes;
+    machine_homed = axes == HOMED_ALL;
+    arm();
+}
+
 static void raise(uint8_t alarm, uint8_t detail)
 {
     path_cancel();
@@ -50,8 +59,7 @@ static void raise(uint8_t alarm, uint8_t detail)
     machine_state = STATE_ALARM;
     machine_alarm = alarm;
     machine_alarm_detail = detail;
-    machine_homed = 0;
-    arm();
+    set_homed(0);
 }
 
 void machine_apply_settings(void)
@@ -70,6 +78,7 @@ void machine_init(void)
 
     path_cancel();
     machine_slot = SLOT_NONE;
+    progress_init();
     machine_apply_settings();
     if (!settings_good) {
         raise(ALARM_SETTINGS_LOST, 0);
@@ -92,22 +101,25 @@ uint8_t machine_not_ready(void)
     return ERROR_OK;
 }
 
-uint8_t machine_home(void)
+uint8_t machine_home(uint8_t axes)
 {
     uint8_t error = machine_not_ready();
 
+    if ((uint8_t)(axes - 1) >= HOMED_ALL) {
+        return ERROR_OUT_OF_RANGE;
+    }
     if (error == ERROR_OK) {
         machine_state = STATE_HOMING;
-        machine_homed = 0;
-        arm();
-        homing_begin();
+        homing_begin(axes, machine_homed_axes);
+        set_homed(machine_homed_axes & (uint8_t)~axes);
     }
     return error;
 }
 
-uint8_t machine_run(uint8_t slot, uint8_t step)
+uint8_t machine_run(uint8_t slot, uint8_t flags)
 {
     uint8_t error = machine_not_ready();
+    uint8_t from = 1;
 
     if (error != ERROR_OK) {
         return error;
@@ -115,7 +127,12 @@ uint8_t machine_run(uint8_t slot, uint8_t step)
     if (!machine_homed) {
         return ERROR_NOT_HOMED;
     }
-    if (slot == SLOT_NONE) {
+    if (flags & RUN_FLAG_RESUME) {
+        slot = progress_slot();
+        if (slot == SLOT_NONE) {
+            return ERROR_NOTHING_TO_RESUME;
+        }
+    } else if (slot == SLOT_NONE) {
         slot = parts_selected();
     }
     if (!parts_present(slot)) {
@@ -127,11 +144,17 @@ uint8_t machine_run(uint8_t slot, uint8_t step)
     if (part_check(slot, parts_length)) {
         return ERROR_INVALID_PART;
     }
+    if (flags & RUN_FLAG_RESUME) {
+        from = progress_from();
+    } else {
+        progress_forget();
+    }
+    progress_follow(from);
     machine_slot = slot;
     machine_state = STATE_RUNNING;
     finished = 0;
     ramp_set_override(100);
-    passes_begin(slot, step);
+    passes_begin(slot, flags & RUN_FLAG_STEP, from);
     path_begin();
     return ERROR_OK;
 }
@@ -297,39 +320,12 @@ static void serve_trip(void)
     guard_tripped = 0;
 }
 
-static void serve_buttons(void)
-{
-    uint8_t presses = inputs_take_presses();
-
-    if (presses & INPUT_STOP) {
-        if (machine_state == STATE_ALARM) {
-            machine_reset();
-        } else {
-            machine_stop();
-        }
-    } else if (presses & INPUT_HOLD) {
-        if (machine_state == STATE_IDLE) {
-            led_show(parts_select_next());
-        } else {
-            machine_hold();
-        }
-    } else if (presses & INPUT_RUN) {
-        if (machine_state == STATE_HOLD || machine_state == STATE_PAUSE) {
-            machine_resume();
-        } else if (machine_homed) {
-            machine_run(SLOT_NONE, 0);
-        } else {
-            machine_home();
-        }
-    }
-}
-
 static void serve_homing(void)
 {
     uint8_t result = homing_poll();
 
     if (result == HOMING_DONE) {
-        machine_homed = 1;
+        set_homed(machine_homed_axes | homing_axes);
         become_idle();
     } else if (result != 0) {
         raise(result, homing_axis);
@@ -355,7 +351,7 @@ void machine_poll(void)
     if (guard_tripped) {
         serve_trip();
     }
-    serve_buttons();
+    buttons_poll();
     if (machine_state == STATE_HOMING) {
         serve_homing();
     } else if (machine_state >= STATE_MOVING) {
@@ -366,9 +362,15 @@ void machine_poll(void)
                 machine_state == STATE_HOLD) &&
                !path_busy() && !guard_tripped) {
         /* The flag is read last: a trip may end the motion at any moment. */
-        finished = !passes_more;
-        machine_state = passes_more ? STATE_PAUSE : STATE_IDLE;
+        if (passes_more) {
+            machine_state = STATE_PAUSE;
+        } else {
+            progress_forget();
+            finished = 1;
+            become_idle();
+        }
     }
+    progress_poll(machine_state == STATE_RUNNING);
     if (path_refused && !machine_quiet()) {
         raise(ALARM_PATH, 0);
     }

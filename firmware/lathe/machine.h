@@ -8,7 +8,9 @@
  *
  * RUN and STOP are buttons; the commands HOME, RUN and RESUME are the three
  * meanings of the first, STOP and RESET those of the second; JOG and GOTO
- * lead from IDLE to MOVING, TOUCH to TOUCHING (lathe/manual.h). HOLD in IDLE
+ * lead from IDLE to MOVING, TOUCH to TOUCHING (lathe/manual.h). A homed machine
+ * in IDLE waits until RUN is let go: it starts the part, or resumes it when
+ * RUN was down for LONG_PRESS_MS. HOLD in IDLE
  * selects the next part; the LED flashes its number. In PAUSE the slides are
  * parked and the part waits for a person: a message, another tool, or the end
  * of an operation when it is run step by step. A trip is the
@@ -30,7 +32,9 @@
 extern uint8_t machine_state;        /* STATE_... */
 extern uint8_t machine_alarm;        /* ALARM_... */
 extern uint8_t machine_alarm_detail; /* axis, where one is concerned */
-extern uint8_t machine_homed;
+extern uint8_t machine_homed;        /* both axes */
+extern uint8_t machine_homed_axes;   /* HOMED_AXIS_... */
+#define HOMED_ALL (HOMED_AXIS_X | HOMED_AXIS_Z)
 extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
 
 /* Starts in IDLE, or in ALARM when the settings were lost. */
@@ -39,9 +43,10 @@ void machine_init(void);
 /* Serves trips, buttons, and what moves; every millisecond. */
 void machine_poll(void);
 
-uint8_t machine_home(void);
-/* step: pause after every operation. */
-uint8_t machine_run(uint8_t slot, uint8_t step);
+/* axes: HOMED_AXIS_... */
+uint8_t machine_home(uint8_t axes);
+/* flags: RUN_FLAG_... */
+uint8_t machine_run(uint8_t slot, uint8_t flags);
 uint8_t machine_hold(void);
 uint8_t machine_resume(void);
 uint8_t machine_stop(void);

@@ -6,6 +6,7 @@
 #include "lathe/contour.h"  /* stretches, material */
 #include "lathe/cuts.h"     /* the passes of one operation */
 #include "lathe/part.h"     /* the part */
+#include "lathe/places.h"   /* what is being described */
 #include "link/protocol.h"  /* axes, settings */
 #include "motion/path.h"    /* segments */
 #include "motion/stream.h"  /* where the tool is */
@@ -39,15 +40,6 @@ static uint16_t own_size; /* of the record at contour_own */
 static uint8_t parked;    /* nothing has been cut since the last pause */
 static uint8_t outside;   /* the tool is farther out than the stock */
 
-/*
- * Up to 16 segments, five passes, are described ahead of the tool. What it
- * does now is told by the mark of the segment: an index into this ring.
- */
-#define SHOWN 8
-static uint8_t shown_operation[SHOWN];
-static uint8_t shown_pass[SHOWN];
-static uint8_t newest;
-
 static uint8_t at_most_255(uint16_t value)
 {
     return value > 255 ? 255 : (uint8_t)value;
@@ -55,9 +47,7 @@ static uint8_t at_most_255(uint16_t value)
 
 static void show_pass(void)
 {
-    newest = (newest + 1) & (SHOWN - 1);
-    shown_operation[newest] = operation;
-    shown_pass[newest] = at_most_255(cuts_pass);
+    places_next(operation, at_most_255(cuts_pass));
 }
 
 static void on_the_way(void)
@@ -69,12 +59,12 @@ static void on_the_way(void)
 
 uint8_t passes_operation(void)
 {
-    return shown_operation[path_mark];
+    return places_operation(path_mark);
 }
 
 uint8_t passes_pass(void)
 {
-    return shown_pass[path_mark];
+    return places_pass(path_mark);
 }
 
 uint8_t passes_passes(void)
@@ -92,7 +82,7 @@ static void segment(uint16_t rate)
     path_next.kind = SEGMENT_LINE;
     path_next.dx = 0;
     path_next.dz = 0;
-    path_next.mark = newest;
+    path_next.mark = places_mark();
     path_set_feed(rate);
 }
 
@@ -151,7 +141,7 @@ static int16_t below(int16_t height)
     return height + zero_x() - at_x;
 }
 
-void passes_begin(uint8_t slot, uint8_t step)
+void passes_begin(uint8_t slot, uint8_t step, uint8_t from)
 {
     slot_cut = slot;
     stepping = step;
@@ -162,7 +152,19 @@ void passes_begin(uint8_t slot, uint8_t step)
     operation = 0;
     parked = 0;
     stage = STAGE_RECORD;
+    places_begin(from);
+    path_mark = from;
     on_the_way();
+}
+
+/* To park, unless that has been done before the power went. */
+static void park(void)
+{
+    stage = STAGE_PARK_X;
+    if (places_to_go_on != 0) {
+        parked = 1;
+        stage = STAGE_RECORD;
+    }
 }
 
 /* Takes the record at contour_own; what is parked for comes afterwards. */
@@ -170,6 +172,7 @@ static void take_record(void)
 {
     if (contour_own >= part_length) {
         passes_more = 0;
+        show_pass();
         stage = STAGE_PARK_X;
         return;
     }
@@ -180,7 +183,11 @@ static void take_record(void)
             ? contour_own != PART_IMAGE_HEADER_SIZE
             : part_type != OPERATION_CUT && stepping && operation != 0) {
         if (!parked) {
-            stage = STAGE_PARK_X;
+            if (part_type == OPERATION_TOOL) {
+                show_pass(); /* a place that is never cut, to go on from */
+                show_pass();
+            }
+            park();
             return;
         }
     }
@@ -190,7 +197,7 @@ static void take_record(void)
         operation++;
         if (part_type == OPERATION_PAUSE) {
             on_the_way();
-            stage = STAGE_PARK_X;
+            park();
         } else if (cuts_begin()) {
             stage = STAGE_CLEAR;
             return;
@@ -286,6 +293,9 @@ static void move(void)
             break;
         }
         show_pass();
+        if (places_to_go_on != 0) {
+            stage = STAGE_PASS;
+        }
         break;
     case STAGE_RISE:
         if (below(cuts_rise) > 0) {
@@ -372,6 +382,10 @@ uint8_t passes_source(void)
         }
         segment(0);
         move();
+        if (places_to_go_on != 0 && path_next.dx == 0) {
+            path_next.kind = SEGMENT_WAIT; /* one pass in each turn */
+            path_next.dx = 1;
+        }
     } while (path_next.dx == 0 && path_next.dz == 0);
     return 1;
 }

@@ -29,8 +29,10 @@
 
 #include <stdint.h>
 
-/* Prepares the part in a slot; step: pause after every operation. */
-void passes_begin(uint8_t slot, uint8_t step);
+/* Prepares the part in a slot; step: pause after every operation. What lies
+   before the place `from` has been cut already and is left out; 1 = nothing
+   (lathe/places.h). */
+void passes_begin(uint8_t slot, uint8_t step, uint8_t from);
 
 /* Describes the next move in path_next and path_rate; 0 when the tool is
    back at park. passes_more: the part goes on behind it, a chain of its own,

@@ -2,11 +2,13 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "link/commands.h"
-#include "lathe/machine.h" /* state, actions */
-#include "lathe/manual.h"  /* jog, goto, touch */
-#include "lathe/part.h"
+#include "lathe/homing.h"     /* spread, warnings */
+#include "lathe/machine.h"    /* state, actions */
+#include "lathe/manual.h"     /* jog, goto, touch */
+#include "lathe/part.h"       /* operations */
 #include "lathe/part_check.h" /* upload, max rate */
-#include "lathe/passes.h"     /* progress */
+#include "lathe/passes.h"     /* progress of the run */
+#include "lathe/progress.h"   /* of the part not finished */
 #include "link/frame.h"       /* request, response */
 #include "link/lengths.h"     /* of requests */
 #include "link/protocol.h"    /* numbers */
@@ -144,8 +146,25 @@ static uint8_t status(void)
     put_u16(STATUS_RESPONSE_BAD_FRAMES_AT, frame_bad_frames);
     put_uptime();
     frame_response[STATUS_RESPONSE_STREAM_LOW_AT] = stream_low;
+    frame_response[STATUS_RESPONSE_SPREAD_X_AT] = homing_spread[AXIS_X];
+    frame_response[STATUS_RESPONSE_SPREAD_Z_AT] = homing_spread[AXIS_Z];
+    frame_response[STATUS_RESPONSE_HOMED_AXES_AT] = machine_homed_axes;
+    frame_response[STATUS_RESPONSE_WARNINGS_AT] = homing_warnings;
     frame_response[STATUS_RESPONSE_INPUTS_AT] = inputs_state | manual_contact;
     return STATUS_RESPONSE_SIZE;
+}
+
+static uint8_t progress(void)
+{
+    frame_response[PROGRESS_RESPONSE_SLOT_AT] = progress_slot();
+    frame_response[PROGRESS_RESPONSE_CRC_AT] = progress_record[PROGRESS_CRC_AT];
+    frame_response[PROGRESS_RESPONSE_CRC_AT + 1] =
+        progress_record[PROGRESS_CRC_AT + 1];
+    frame_response[PROGRESS_RESPONSE_OPERATION_AT] =
+        progress_record[PROGRESS_OPERATION_AT];
+    frame_response[PROGRESS_RESPONSE_PASS_NUMBER_AT] =
+        progress_record[PROGRESS_PASS_AT];
+    return PROGRESS_RESPONSE_SIZE;
 }
 
 static uint8_t upload_commit(void)
@@ -317,6 +336,8 @@ uint8_t commands_execute(void)
         return part_read();
     case COMMAND_SETTING_GET:
         return setting_get();
+    case COMMAND_PROGRESS:
+        return progress();
     case COMMAND_JOG:
     case COMMAND_GOTO:
     case COMMAND_TOUCH:
@@ -325,11 +346,11 @@ uint8_t commands_execute(void)
                              get_u16(JOG_PATIENCE_AT));
         break;
     case COMMAND_HOME:
-        error = machine_home();
+        error = machine_home(frame_payload[HOME_AXES_AT]);
         break;
     case COMMAND_RUN:
-        error =
-            machine_run(frame_payload[RUN_SLOT_AT], frame_payload[RUN_STEP_AT]);
+        error = machine_run(frame_payload[RUN_SLOT_AT],
+                            frame_payload[RUN_FLAGS_AT]);
         break;
     case COMMAND_HOLD:
         error = machine_hold();

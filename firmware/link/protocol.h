@@ -100,6 +100,18 @@
 #define STATUS_FLAG_BUTTON_STOP             0x40
 #define STATUS_FLAG_MOTION                  0x80
 
+/* Bits of the axes in HOME and STATUS. */
+#define HOMED_AXIS_X                        0x01
+#define HOMED_AXIS_Z                        0x02
+
+/* Bits of the warnings in STATUS. */
+#define WARNING_DEAD_X                      0x01
+#define WARNING_DEAD_Z                      0x02
+
+/* Bits of the flags in RUN. */
+#define RUN_FLAG_STEP                       0x01
+#define RUN_FLAG_RESUME                     0x02
+
 /* Alarms in STATUS. */
 #define ALARM_NONE                          0
 #define ALARM_HOME_NOT_FOUND                1
@@ -112,12 +124,14 @@
 #define ALARM_STOPPED_HOMING                8
 #define ALARM_DEAD_STEPS_SPREAD             9
 #define ALARM_PATH                          11
+#define ALARM_HOME_OPENED_LATE              12
+#define ALARM_PHASE_DRIFT                   13
 #define ALARM_SWITCH_WIRING                 14
 #define ALARM_PROBE_UNEXPECTED              15
 
 /* Bits of the inputs in STATUS. */
-#define STATUS_INPUT_CONTACT                64
-#define STATUS_INPUT_TOUCHED                128
+#define STATUS_INPUT_CONTACT                0x40
+#define STATUS_INPUT_TOUCHED                0x80
 
 /* Why the chip last started. */
 #define RESET_CAUSE_POWER_ON                1
@@ -146,6 +160,7 @@
 #define ERROR_ESTOP                         15
 #define ERROR_PROBE_CLOSED                  16
 #define ERROR_NOT_FITTED                    17
+#define ERROR_NOTHING_TO_RESUME             18
 #define ERROR_WRONG_WAY                     19
 
 /* Commands. _REQUEST_SIZE: payload bytes; _RESPONSE_SIZE: payload bytes
@@ -172,7 +187,7 @@
 /* Where is the tool, what is the machine doing? */
 #define COMMAND_STATUS                      0x02
 #define STATUS_REQUEST_SIZE                 0
-#define STATUS_RESPONSE_SIZE                33
+#define STATUS_RESPONSE_SIZE                37
 #define STATUS_RESPONSE_STATE_AT            1
 #define STATUS_RESPONSE_ALARM_AT            2
 #define STATUS_RESPONSE_ALARM_DETAIL_AT     3
@@ -191,19 +206,24 @@
 #define STATUS_RESPONSE_BAD_FRAMES_AT       25
 #define STATUS_RESPONSE_UPTIME_MS_AT        27
 #define STATUS_RESPONSE_STREAM_LOW_AT       31
-#define STATUS_RESPONSE_INPUTS_AT           32
+#define STATUS_RESPONSE_SPREAD_X_AT         32
+#define STATUS_RESPONSE_SPREAD_Z_AT         33
+#define STATUS_RESPONSE_HOMED_AXES_AT       34
+#define STATUS_RESPONSE_WARNINGS_AT         35
+#define STATUS_RESPONSE_INPUTS_AT           36
 /* Find the limit switches, X first, and measure the dead steps. Answered at
  * once; STATUS tells the end. */
 #define COMMAND_HOME                        0x03
-#define HOME_REQUEST_SIZE                   0
+#define HOME_REQUEST_SIZE                   1
 #define HOME_RESPONSE_SIZE                  1
+#define HOME_AXES_AT                        0
 /* Cut a part. Answered when the chip has checked the part again; STATUS
  * tells the rest. */
 #define COMMAND_RUN                         0x04
 #define RUN_REQUEST_SIZE                    2
 #define RUN_RESPONSE_SIZE                   1
 #define RUN_SLOT_AT                         0
-#define RUN_STEP_AT                         1
+#define RUN_FLAGS_AT                        1
 /* Stop the run so that it can go on. OK too when it is already held. A jog
  * or a way to a place brakes and is over. */
 #define COMMAND_HOLD                        0x05
@@ -264,6 +284,15 @@
 #define TOUCH_RESPONSE_SIZE                 1
 #define TOUCH_X_AT                          0
 #define TOUCH_Z_AT                          4
+/* Which part was begun and not finished, and how far did it come? Known
+ * without power too; forgotten when a part is begun anew. */
+#define COMMAND_PROGRESS                    0x0F
+#define PROGRESS_REQUEST_SIZE               0
+#define PROGRESS_RESPONSE_SIZE              6
+#define PROGRESS_RESPONSE_SLOT_AT           1
+#define PROGRESS_RESPONSE_CRC_AT            2
+#define PROGRESS_RESPONSE_OPERATION_AT      4
+#define PROGRESS_RESPONSE_PASS_NUMBER_AT    5
 /* Start to receive a part image; an upload under way is forgotten.
  * OUT_OF_RANGE: length is not 32 to 2496. */
 #define COMMAND_UPLOAD_BEGIN                0x10
@@ -511,7 +540,11 @@
 #define SETTING_SPINDLE_MAX                 27
 #define SETTING_PROBE_FITTED                28
 #define SETTING_TOUCH_BACK_OFF              29
-#define SETTING_COUNT                       30
+#define SETTING_HOME_PHASE_X                30
+#define SETTING_HOME_PHASE_Z                31
+#define SETTING_DEAD_JUMP                   32
+#define SETTING_DRIFT_MAX                   33
+#define SETTING_COUNT                       34
 
 /* SETTINGS(X): X(id, name, default, min, max) for each, in order of id. */
 #define SETTINGS(X)                                                          \
@@ -522,7 +555,7 @@
     X(4, ZERO_X, (-3575), (-32000), 0)                                       \
     X(5, ZERO_Z, (-8000), (-32000), 0)                                       \
     X(6, HOME_RATE, 800, 20, 4000)                                           \
-    X(7, LATCH_RATE, 100, 20, 100)                                           \
+    X(7, LATCH_RATE, 50, 20, 100)                                            \
     X(8, RAPID_RATE_X, 1000, 20, 32000)                                      \
     X(9, RAPID_RATE_Z, 1000, 20, 32000)                                      \
     X(10, SWITCH_TRAVEL_X, 0, 0, 200)                                        \
@@ -532,8 +565,8 @@
     X(14, INVERT_X, 0, 0, 1)                                                 \
     X(15, INVERT_Z, 0, 0, 1)                                                 \
     X(16, DEAD_MAX, 300, 0, 1000)                                            \
-    X(17, DEAD_X, 0, 0, 1000)                                                \
-    X(18, DEAD_Z, 0, 0, 1000)                                                \
+    X(17, DEAD_X, (-1), (-1), 1000)                                          \
+    X(18, DEAD_Z, (-1), (-1), 1000)                                          \
     X(19, HOMING_REPEATS, 3, 1, 9)                                           \
     X(20, SPREAD_MAX, 2, 0, 50)                                              \
     X(21, ACCELERATION, 8000, 1100, 32000)                                   \
@@ -544,6 +577,10 @@
     X(26, SPINDLE_MIN, 100, 0, 32000)                                        \
     X(27, SPINDLE_MAX, 3800, 1, 32000)                                       \
     X(28, PROBE_FITTED, 0, 0, 1)                                             \
-    X(29, TOUCH_BACK_OFF, 50, 1, 1000)
+    X(29, TOUCH_BACK_OFF, 50, 1, 1000)                                       \
+    X(30, HOME_PHASE_X, (-1), (-1), 7)                                       \
+    X(31, HOME_PHASE_Z, (-1), (-1), 7)                                       \
+    X(32, DEAD_JUMP, 5, 0, 1000)                                             \
+    X(33, DRIFT_MAX, 1, 0, 50)
 
 #endif

@@ -4,7 +4,7 @@
 import textwrap
 from typing import Any
 
-from protocol_model import NOTICE, RECORD_HEAD, Field, Model, rule_order
+from protocol_model import FLAGS, NOTICE, RECORD_HEAD, Field, Model, rule_order
 
 WIDTH = 79
 
@@ -33,7 +33,7 @@ def enum(model: Model, table: str, prefix: str, heading: str) -> list[str]:
         if "rule" in entry:
             lines += comment(entry["rule"])
         value = entry["value"]
-        shown = f"0x{value:02X}" if table == "status_flag" else str(value)
+        shown = f"0x{value:02X}" if table in FLAGS else str(value)
         lines.append(define(f"{prefix}_{name.upper()}", shown))
     return lines
 
@@ -162,6 +162,9 @@ def header(model: Model) -> str:
         *enum(model, "axis", "AXIS", "Axes, as in ZERO and in the detail of an alarm."),
         *enum(model, "state", "STATE", "States in STATUS."),
         *enum(model, "status_flag", "STATUS_FLAG", "Bits of the flags in STATUS."),
+        *enum(model, "homed_axis", "HOMED_AXIS", "Bits of the axes in HOME and STATUS."),
+        *enum(model, "warning", "WARNING", "Bits of the warnings in STATUS."),
+        *enum(model, "run_flag", "RUN_FLAG", "Bits of the flags in RUN."),
         *enum(model, "alarm", "ALARM", "Alarms in STATUS."),
         *enum(model, "input", "STATUS_INPUT", "Bits of the inputs in STATUS."),
         *enum(model, "reset_cause", "RESET_CAUSE", "Why the chip last started."),

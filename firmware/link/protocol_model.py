@@ -8,6 +8,7 @@ from typing import Any
 
 SIZES = {"u8": 1, "i16": 2, "u16": 2, "u32": 4, "i32": 4}
 STRUCT_CODES = {"u8": "B", "i16": "h", "u16": "H", "u32": "I", "i32": "i"}
+FLAGS = ("status_flag", "input", "homed_axis", "warning", "run_flag")
 ENUMS = ("axis", "status_flag", "state", "input", "reset_cause", "error", "alarm", "refusal")
 RECORD_HEAD = 4  # type u8, kind u8, size u16
 RECORD_HEAD_CODE = "BBH"

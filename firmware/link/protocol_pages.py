@@ -51,13 +51,13 @@ def explained(model: Model, name: str, *columns: str) -> str:
     return table(("code", "name", *columns), rows)
 
 
-def bits(model: Model, name: str) -> str:
-    """A table of bits."""
+def flags(model: Model, name: str, *columns: str) -> str:
+    """A table of bits with the named columns."""
     rows = [
-        (f"0x{entry['value']:02X}", f"`{key.upper()}`", entry["meaning"])
+        (f"0x{entry['value']:02X}", f"`{key.upper()}`", *(entry[column] for column in columns))
         for key, entry in model.raw[name].items()
     ]
-    return table(("bit", "name", "meaning"), rows)
+    return table(("bit", "name", *columns), rows)
 
 
 def limits(model: Model) -> str:
@@ -112,9 +112,12 @@ def fill(model: Model, page: str, others: dict[str, str] | None = None) -> str:
         "commands": commands(model),
         "errors": explained(model, "error", "cause", "remedy"),
         "states": explained(model, "state", "meaning"),
-        "flags": bits(model, "status_flag"),
+        "flags": flags(model, "status_flag", "meaning"),
+        "homed_axes": flags(model, "homed_axis", "meaning"),
+        "warnings": flags(model, "warning", "cause", "remedy"),
+        "run_flags": flags(model, "run_flag", "meaning"),
         "alarms": explained(model, "alarm", "cause", "remedy"),
-        "inputs": bits(model, "input"),
+        "inputs": flags(model, "input", "meaning"),
         "resets": explained(model, "reset_cause", "meaning"),
         "refusals": f"{rule_order(model)}\n\n{explained(model, 'refusal', 'rule', 'remedy')}",
         "image": image(model),

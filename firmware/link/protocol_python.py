@@ -10,6 +10,9 @@ CLASSES = {
     "axis": ("Axis", "IntEnum", "The two slides."),
     "state": ("State", "IntEnum", "What the machine is doing."),
     "status_flag": ("StatusFlag", "IntFlag", "Bits of the flags in STATUS."),
+    "homed_axis": ("HomedAxis", "IntFlag", "Axes in HOME and STATUS."),
+    "warning": ("MachineWarning", "IntFlag", "Bits of the warnings in STATUS."),
+    "run_flag": ("RunFlag", "IntFlag", "Bits of the flags in RUN."),
     "alarm": ("Alarm", "IntEnum", "Why the machine stopped."),
     "input": ("StatusInput", "IntFlag", "Bits of the inputs in STATUS."),
     "reset_cause": ("ResetCause", "IntEnum", "Why the chip last started."),
@@ -207,7 +210,7 @@ def texts_module(model: Model) -> str:
     imports = [
         "from typing import NamedTuple",
         "",
-        "from tornillo.protocol import Alarm, ErrorCode, Refusal",
+        "from tornillo.protocol import Alarm, ErrorCode, MachineWarning, Refusal",
         "",
         "",
         "class Explanation(NamedTuple):",
@@ -220,5 +223,6 @@ def texts_module(model: Model) -> str:
     lines = head("What the codes of the chip mean to a person.", imports)
     lines += texts(model, "error", "ERROR_TEXTS")
     lines += texts(model, "alarm", "ALARM_TEXTS")
+    lines += texts(model, "warning", "WARNING_TEXTS")
     lines += texts(model, "refusal", "REFUSAL_TEXTS")
     return "\n".join(lines) + "\n"

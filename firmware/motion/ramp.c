@@ -2,8 +2,9 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "motion/ramp.h"
-#include "motion/path.h" /* segments */
-#include "sfr.h"         /* INTCON */
+#include "motion/path.h"   /* segments */
+#include "motion/stream.h" /* orders */
+#include "sfr.h"           /* INTCON */
 
 #define GIEL_MASK 0x40
 
@@ -16,8 +17,17 @@ extern volatile uint8_t ramp_flags;
 extern volatile uint16_t ramp_brake_speed;
 extern volatile uint16_t ramp_brake_factor;
 extern volatile uint16_t ramp_brake_distance;
+extern volatile uint16_t ramp_way;
 void ramp_brake(void);
 void ramp_set_period(void);
+void ramp_arm(void);
+
+/* step_interrupt.asm */
+extern volatile uint8_t ramp_at;
+extern volatile uint8_t stream_next;
+
+/* For ramp_at: entries begin at even places. */
+#define NO_ENTRY 1
 
 /* Longest way to brake that can be planned, 1/2 step. */
 #define DISTANCE_FAR 60000u
@@ -49,11 +59,24 @@ uint16_t ramp_cap(uint16_t speed)
 void ramp_configure(uint16_t acceleration, uint16_t start, uint16_t top)
 {
     ramp_start = (uint32_t)start << 8;
-    ramp_step = (uint16_t)(((uint32_t)acceleration << 8) / 1000);
+    ramp_step = acceleration >> 2;
     ramp_brake_factor = (uint16_t)((1ul << 24) / acceleration);
     ramp_top = (uint32_t)ramp_cap(top) << 8;
     ramp_scale = 256;
     ramp_stop = ramp_distance(start);
+}
+
+/* The next entry takes what is wanted now, without waiting for its turn; an
+   order, during which the tool stands, is waited for. Low interrupt off, on
+   behind it. */
+static void at_once(void)
+{
+    ramp_at = NO_ENTRY;
+    if (!(stream_next & STREAM_END)) {
+        ramp_tick();
+    }
+    ramp_arm();
+    INTCON |= GIEL_MASK;
 }
 
 void ramp_set_override(uint8_t percent)
@@ -62,12 +85,13 @@ void ramp_set_override(uint8_t percent)
 
     INTCON &= (uint8_t)~GIEL_MASK;
     ramp_scale = scale;
-    INTCON |= GIEL_MASK;
+    at_once();
 }
 
 void ramp_begin(uint8_t segment)
 {
     ramp_segment = segment;
+    ramp_way = 0;
     path_mark = segments[segment].mark;
     ramp_speed = segment_speed[segment];
     if (ramp_speed > ramp_start) {
@@ -75,6 +99,7 @@ void ramp_begin(uint8_t segment)
     }
     INTCON &= (uint8_t)~GIEL_MASK;
     ramp_set_period();
+    ramp_arm();
     INTCON |= GIEL_MASK;
     ramp_flags |= RUNNING;
 }
@@ -86,11 +111,9 @@ void ramp_end(void)
 
 void ramp_hold(void)
 {
-    ramp_flags |= HOLDING;
-    /* Now, not with the next millisecond. */
     INTCON &= (uint8_t)~GIEL_MASK;
-    ramp_tick();
-    INTCON |= GIEL_MASK;
+    ramp_flags |= HOLDING;
+    at_once();
 }
 
 uint8_t ramp_holding(void)
@@ -106,4 +129,5 @@ uint8_t ramp_held(void)
 void ramp_release(void)
 {
     ramp_flags &= (uint8_t) ~(HOLDING | HELD);
+    ramp_arm();
 }

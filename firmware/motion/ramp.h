@@ -1,10 +1,10 @@
 /*
- * Ramp: the speed along the path, one thousand times a second.
+ * Ramp: the speed along the path.
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- * In each millisecond the speed moves by one acceleration step towards the
- * speed wanted (the segment's, times the override, or the start/stop speed
+ * In each tick of 1/1024 s the speed moves by one acceleration step towards
+ * the speed wanted (the segment's, times the override, or the start/stop speed
  * for a hold), but never so high that the way left to the next corner, and
  * the speed planned there, no longer suffices to brake. The plan is kept in
  * braking distances w = v^2 / (2 a), because then it takes only additions:
@@ -15,8 +15,17 @@
  *        |   /              \____
  *        |__/____________________\____ way
  *
- * The new period goes to the step interrupt through stream_period, which it
- * takes over with its next entry; nothing is ever locked out.
+ * Time is the steps' own: speed / 1024 + 1 entries go by at a speed, and then
+ * come as many ticks as a ramp that follows every one of them would have used
+ * for that way (stretch included). So v^2 = v0^2 + 2 a s, however coarse, and
+ * the braking distances hold. No clock is looked at: which entry gets which
+ * speed depends on the segments alone, not on when USB lets this run, as long
+ * as the main loop keeps the queues filled and this is done before the speed
+ * is over (half a millisecond or more; else the next entry takes it).
+ *
+ * The new period goes to the step interrupt through stream_period, and the
+ * place in the ring of the entry that takes it through ramp_at. A hold and an
+ * override act with the very next entry. Nothing is ever locked out.
  *
  * Units: speeds 1/256 step/s (24 bits); distances 1/2 step (16 bits, up to
  * 32,767 steps); path counted in entries.
@@ -67,7 +76,7 @@ uint8_t ramp_holding(void); /* from ramp_hold() to ramp_release() */
 /* Goes on. */
 void ramp_release(void);
 
-/* Low-priority interrupt, every millisecond. */
+/* Low-priority interrupt, when the step interrupt has taken a period over. */
 void ramp_tick(void);
 
 #endif

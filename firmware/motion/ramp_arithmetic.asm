@@ -6,24 +6,25 @@
         include <p18f4550.inc>
         radix   dec
 
-        global  ramp_divide, ramp_multiply, _ramp_brake
-        extern  divisor, quotient, remainder, bits, square, product
+        global  _ramp_set_period, ramp_multiply, _ramp_brake
+        extern  wanted, remainder, bits, square, product
+        extern  _ramp_speed, _stream_period
         extern  _ramp_scale, _ramp_brake_speed, _ramp_brake_factor
         extern  _ramp_brake_distance
 
 ramp_arithmetic_code code
 
-; quotient = 12,000,000 * 256 / divisor, restoring division, 32 bits; about
-; 800 cycles. A divisor of 0 gives the largest number.
-ramp_divide:
-        banksel divisor
-        movlw   0x00                    ; 3,072,000,000 = B71B0000h
-        movwf   quotient, B
-        movwf   quotient + 1, B
+; Hands the speed to the step interrupt as a period = 12,000,000 * 256 / speed;
+; restoring division, about 800 cycles, in 32 bits: the fourth byte is that of
+; _ramp_stretch, which has been used by then. A speed of 0 gives the longest.
+_ramp_set_period:
+        banksel wanted
+        clrf    _stream_period, B       ; 3,072,000,000 = B71B0000h
+        clrf    _stream_period + 1, B
         movlw   0x1B
-        movwf   quotient + 2, B
+        movwf   _stream_period + 2, B
         movlw   0xB7
-        movwf   quotient + 3, B
+        movwf   _stream_period + 3, B
         clrf    remainder, B
         clrf    remainder + 1, B
         clrf    remainder + 2, B
@@ -32,31 +33,31 @@ ramp_divide:
         movwf   bits, B
 divide_bit:
         bcf     STATUS, C, A
-        rlcf    quotient, F, B
-        rlcf    quotient + 1, F, B
-        rlcf    quotient + 2, F, B
-        rlcf    quotient + 3, F, B
+        rlcf    _stream_period, F, B
+        rlcf    _stream_period + 1, F, B
+        rlcf    _stream_period + 2, F, B
+        rlcf    _stream_period + 3, F, B
         rlcf    remainder, F, B
         rlcf    remainder + 1, F, B
         rlcf    remainder + 2, F, B
         rlcf    remainder + 3, F, B
-        movf    divisor, W, B
+        movf    _ramp_speed, W, B
         subwf   remainder, F, B
-        movf    divisor + 1, W, B
+        movf    _ramp_speed + 1, W, B
         subwfb  remainder + 1, F, B
-        movf    divisor + 2, W, B
+        movf    _ramp_speed + 2, W, B
         subwfb  remainder + 2, F, B
         movlw   0
         subwfb  remainder + 3, F, B
         bnc     divide_restore
-        bsf     quotient, 0, B
+        bsf     _stream_period, 0, B
         bra     divide_next
 divide_restore:
-        movf    divisor, W, B
+        movf    _ramp_speed, W, B
         addwf   remainder, F, B
-        movf    divisor + 1, W, B
+        movf    _ramp_speed + 1, W, B
         addwfc  remainder + 1, F, B
-        movf    divisor + 2, W, B
+        movf    _ramp_speed + 2, W, B
         addwfc  remainder + 2, F, B
         movlw   0
         addwfc  remainder + 3, F, B
@@ -78,7 +79,7 @@ add_product macro number, byte
 ; distance = speed^2 / 2a in 1/2 step = (speed^2 / 256) * factor / 65,536;
 ; about 90 cycles.
 _ramp_brake:
-        banksel divisor
+        banksel wanted
         clrf    square + 2, B
         clrf    square + 3, B
         movf    _ramp_brake_speed, W, B
@@ -139,30 +140,30 @@ _ramp_brake:
 brake_done:
         return
 
-; divisor = divisor * scale / 256; 24 by 9 bits, about 60 cycles.
+; wanted = wanted * scale / 256; 24 by 9 bits, about 60 cycles.
 ramp_multiply:
-        banksel divisor
+        banksel wanted
         clrf    product, B
         clrf    product + 1, B
         clrf    product + 2, B
         clrf    product + 3, B
         clrf    product + 4, B
-        movf    divisor, W, B
+        movf    wanted, W, B
         mulwf   _ramp_scale, B
         add_product product, 0
-        movf    divisor + 1, W, B
+        movf    wanted + 1, W, B
         mulwf   _ramp_scale, B
         add_product product, 1
-        movf    divisor + 2, W, B
+        movf    wanted + 2, W, B
         mulwf   _ramp_scale, B
         add_product product, 2
         btfss   _ramp_scale + 1, 0, B   ; 256..511
         bra     not_once
-        movf    divisor, W, B
+        movf    wanted, W, B
         addwf   product + 1, F, B
-        movf    divisor + 1, W, B
+        movf    wanted + 1, W, B
         addwfc  product + 2, F, B
-        movf    divisor + 2, W, B
+        movf    wanted + 2, W, B
         addwfc  product + 3, F, B
         movlw   0
         addwfc  product + 4, F, B
@@ -170,15 +171,15 @@ not_once:
         btfss   _ramp_scale + 1, 1, B   ; 512: 200 %
         bra     not_twice
         bcf     STATUS, C, A
-        rlcf    divisor, F, B
-        rlcf    divisor + 1, F, B
-        rlcf    divisor + 2, F, B
-        rlcf    divisor + 3, F, B
+        rlcf    wanted, F, B
+        rlcf    wanted + 1, F, B
+        rlcf    wanted + 2, F, B
+        rlcf    wanted + 3, F, B
         return
 not_twice:
-        movff   product + 1, divisor
-        movff   product + 2, divisor + 1
-        movff   product + 3, divisor + 2
-        movff   product + 4, divisor + 3
+        movff   product + 1, wanted
+        movff   product + 2, wanted + 1
+        movff   product + 3, wanted + 2
+        movff   product + 4, wanted + 3
         return
         end

@@ -1,23 +1,30 @@
-; Ramp: the speed along the path, every millisecond. See ramp.h.
+; Ramp: the speed along the path. See ramp.h.
 ; SPDX-License-Identifier: Apache-2.0
 ;
 ; Runs in the low-priority interrupt, hence without library calls, and in
 ; assembly because 24-bit numbers suit it: 300 cycles at constant speed, 1,150
 ; while the speed changes.
+;
+; The step interrupt asks for it when it takes an entry with a new period, and
+; leaves the state at that entry in _ramp_count and _ramp_stretch. What follows
+; from it, the next speed and the entry that takes it (_ramp_at), depends on
+; nothing else, and so not on when this runs, if it is done before that entry
+; comes: half a millisecond or more.
 
         include <p18f4550.inc>
         radix   dec
 
-        global  _ramp_tick, _ramp_set_period
-        global  divisor, quotient, remainder, bits, square, product
+        global  _ramp_tick, _ramp_arm
+        global  wanted, remainder, bits, square, product
         global  _ramp_speed, _ramp_start, _ramp_top, _ramp_step, _ramp_scale
+        global  _ramp_way, _stream_period, _ramp_count, _ramp_stretch
         global  _ramp_flags, _ramp_segment, _ramp_stop
         global  _ramp_brake_speed, _ramp_brake_factor, _ramp_brake_distance
 
-        extern  ramp_divide, ramp_multiply, _ramp_brake
+        extern  _ramp_set_period, ramp_multiply, _ramp_brake
         extern  _segments, _segment_speed, _path_made, _path_head, _path_mark
-        extern  _stream_flags, _stream_count, _stream_period, _stream_tail
-        extern  _stream_next
+        extern  _stream_flags, _stream_count, _stream_tail
+        extern  _ramp_at
 
 ; struct segment of path.h
 SEGMENTS        equ     16
@@ -32,44 +39,44 @@ RAPID           equ     7               ; bit of the kind
 RUNNING         equ     0
 HOLDING         equ     1
 HELD            equ     2
-MOVED           equ     3               ; the first entry has been made
+CHANGED         equ     3               ; the speed, in this run
 
 ; _stream_flags
 ACTIVE          equ     0
-NEW_PERIOD      equ     3
-
-; _stream_next
-ORDER           equ     7
+STOOD           equ     3
 
 ramp_data       udata
+_stream_period  res 3                   ; the next period; the division needs
+_ramp_stretch   res 1                   ; a fourth byte: stretch of the entry
+_ramp_count     res 1                   ; that took it, low byte of the count
 _ramp_speed     res 4                   ; 1/256 step/s, 24 bits used
 _ramp_start     res 4                   ; start/stop speed
 _ramp_top       res 4                   ; no override goes beyond
-_ramp_step      res 2                   ; change in a millisecond
+_ramp_step      res 2                   ; change in 1/1024 s
 _ramp_stop      res 2                   ; braking distance from the start speed
 _ramp_flags     res 1
 _ramp_segment   res 1
-wanted          res 3
+_ramp_way       res 2                   ; not yet ticked for, 1/1024 entry
+wanted          res 4                   ; 24 bits used
 next            res 3
 least           res 3
+square
 made            res 2
 left            res 2
 limit           res 2
+entries                                 ; 4 times those to the next speed
 kind            res 1
-divisor         res 4                   ; speed, 1/256 step/s, 24 bits used
-quotient        res 4                   ; period, cycles
+product
 remainder       res 4
 bits            res 1
 _ramp_brake_speed res 2                 ; step/s
 _ramp_brake_factor res 2                ; 2^24 / acceleration
 _ramp_brake_distance res 2              ; 1/2 step, at most 65,535
 _ramp_scale     res 2                   ; override, 256 = 100 %
-square          res 4
-product         res 5
 
 ramp_code       code
 
-; --- one millisecond ---------------------------------------------------------
+; --- once with every new period ---------------------------------------------------------
 copy_3  macro   from, to
         movff   from, to
         movff   from + 1, to + 1
@@ -112,23 +119,17 @@ _ramp_tick:
         btfsc   STATUS, Z, A
         btfss   _stream_flags, ACTIVE, A
         return
-        ; The tool stands while an order is waited for, and the first interval
-        ; is long: the speed must not run ahead of it.
-        btfsc   _stream_next, ORDER, A
-        return
-        btfsc   _ramp_flags, MOVED, B
-        bra     read_count
-        movlw   2 * 2
-        subwf   _stream_tail, W, A
-        btfss   STATUS, C, A
-        return
-        bsf     _ramp_flags, MOVED, B
 read_count:
         movff   _stream_count, made
         movff   _stream_count + 1, made + 1
         movf    made, W, B
         xorwf   _stream_count, W, A
         bnz     read_count
+        movf    _ramp_count, W, B
+        subwf   made, W, B
+        btfss   STATUS, C, A
+        decf    made + 1, F, B
+        movff   _ramp_count, made
 
 ; The segment being executed, and the entries left in it.
 this_segment:
@@ -176,10 +177,7 @@ segment_found:
         bz      as_programmed
         btfsc   kind, RAPID, B
         bra     as_programmed
-        copy_3  wanted, divisor
-        clrf    divisor + 3, B
         call    ramp_multiply
-        copy_3  divisor, wanted
         compare wanted, _ramp_top
         bnc     as_programmed
         copy_3  _ramp_top, wanted
@@ -205,9 +203,9 @@ last_segment:
         bcf     STATUS, C, A
         rlcf    left, F, B
         rlcf    left + 1, F, B
-; Some of it is lost: until the next tick speed / 256, in 1/2 steps, and one
-; entry whose time has been set.
-        movlw   2
+; Some of it is lost: this speed's entries and those of the next, twice the
+; speed / 1024 + 1.
+        movlw   4
         addwf   _ramp_speed + 2, W, B
         subwf   left, F, B
         movlw   0
@@ -226,13 +224,71 @@ add_way:
 
 choose:
         btfss   _ramp_flags, HOLDING, B
-        bra     least_speed
+        bra     entries_to_go
         copy_3  _ramp_start, wanted
         compare _ramp_start, _ramp_speed
-        bnc     least_speed
+        bnc     entries_to_go
         bcf     PIE2, CCP2IE, A         ; slow enough to stand
         bsf     _ramp_flags, HELD, B
         return
+
+; The entries that go by at this speed: speed / 1024 + 1, a millisecond or two,
+; or one that lasts longer. Their way at it takes so many 1/1024 s, and every
+; one of these changes the speed that comes next.
+entries_to_go:
+        movlw   0xFC
+        andwf   _ramp_speed + 2, W, B
+        addlw   4
+        movwf   entries, B
+        addwf   _ramp_way + 1, F, B
+        mulwf   _ramp_stretch, B
+        movf    PRODL, W, A
+        addwf   _ramp_way, F, B
+        movf    PRODH, W, A
+        addwfc  _ramp_way + 1, F, B
+        bcf     _ramp_flags, CHANGED, B
+        btfsc   _stream_flags, STOOD, A
+        bra     no_time                 ; a ramp begins with the second step
+time:
+        movf    _ramp_speed + 1, W, B
+        subwf   _ramp_way, W, B
+        movf    _ramp_speed + 2, W, B
+        subwfb  _ramp_way + 1, W, B
+        bnc     time_over
+        movf    _ramp_speed + 1, W, B
+        subwf   _ramp_way, F, B
+        movf    _ramp_speed + 2, W, B
+        subwfb  _ramp_way + 1, F, B
+        rcall   least_speed
+        iorlw   0
+        bnz     time                    ; 0: the speed stays as it is
+no_time:
+        bcf     _stream_flags, STOOD, A
+        clrf    _ramp_way, B
+        clrf    _ramp_way + 1, B
+time_over:
+        btfss   _ramp_flags, CHANGED, B
+        bra     same_period
+        call    _ramp_set_period
+same_period:
+        bcf     STATUS, C, A
+        rrcf    entries, W, B
+        addwf   _ramp_at, F, A
+        bra     armed
+
+; The next entry takes the period.
+_ramp_arm:
+        movlw   2
+        addwf   _stream_tail, W, A
+        movwf   _ramp_at, A
+armed:
+        movf    _stream_tail, W, A
+        subwf   _ramp_at, W, A
+        bz      _ramp_arm               ; it has been taken meanwhile
+        bn      _ramp_arm
+        return
+
+; The speed 1/1024 s later. Returns W = 0 when it stays.
 least_speed:
         copy_3  _ramp_start, least
         compare wanted, least
@@ -261,11 +317,11 @@ faster:
         bc      take_speed
         rcall   too_fast
         bnc     take_speed
-        return
+        retlw   0
 not_below:
         compare wanted, _ramp_speed
         btfsc   STATUS, C, A
-        return                          ; just right
+        retlw   0                       ; just right
         copy_3  wanted, least
         compare _ramp_start, _ramp_speed
         bc      to_least                ; so slow that it may change at once
@@ -283,18 +339,8 @@ to_least:
         copy_3  least, next
 take_speed:
         copy_3  next, _ramp_speed
-
-; Hands the speed to the step interrupt as a period.
-_ramp_set_period:
-        banksel _ramp_speed
-        copy_3  _ramp_speed, divisor
-        call    ramp_divide
-        bcf     _stream_flags, NEW_PERIOD, A
-        movff   quotient, _stream_period
-        movff   quotient + 1, _stream_period + 1
-        movff   quotient + 2, _stream_period + 2
-        bsf     _stream_flags, NEW_PERIOD, A
-        return
+        bsf     _ramp_flags, CHANGED, B
+        retlw   1
 
 ; Carry set when the way in limit is too short to brake from the speed in next.
 too_fast:

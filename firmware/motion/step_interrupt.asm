@@ -20,6 +20,11 @@
 ; interval = period + (stretch * period) / 256, in cycles, 24 bits; of a wait
 ; the number of milliseconds that its entry tells.
 ;
+; The period changes with certain entries only, each named by the place in the
+; ring behind it, _ramp_at: so which step gets which speed does not depend on
+; when the ramp finds time to work out the next one. It is woken there, by the
+; flag of Timer 3, which stands still.
+;
 ; Intervals over 65,535 cycles are cut: while 0x10000 or more remain, half a
 ; turn of Timer 1 (0x8000) is waited for first, so that the last piece is
 ; never shorter than half a turn. The compare register is written high byte
@@ -30,12 +35,13 @@
         radix   dec
 
         global  _stream_head, _stream_tail, _stream_flags
-        global  _stream_count, _stream_signal, _stream_period
+        global  _stream_count, _stream_signal
         global  _stream_step_dir, _stream_pulse, _stream_invert_x
-        global  _stream_invert_z
+        global  _stream_invert_z, _ramp_at
         global  _position_x, _position_z, _slack_x, _slack_z
         global  _phase_x, _phase_z, _phase_step, _coils_x, _coils_z
         global  _pattern_x, _pattern_z, _stream_next, _step_ring
+        extern  _stream_period, _ramp_count, _ramp_stretch ; ramp_tick.asm
 
 STEP_X          equ     0
 X_NEGATIVE      equ     1
@@ -57,7 +63,7 @@ ORDER_SIGNAL    equ     3
 ACTIVE          equ     0               ; an interrupt is due
 WAITING         equ     1               ; half turns of the timer remain
 DRY             equ     2               ; ring was empty in mid-move
-NEW_PERIOD      equ     3               ; _stream_period is to be taken over
+STOOD           equ     3               ; before the entry to come
 
 access_data     udata_acs
 _stream_head    res 1                   ; written by the main loop only
@@ -66,7 +72,8 @@ _stream_flags   res 1
 _stream_next    res 1                   ; flags of the step to come
 _stream_count   res 2                   ; entries that advanced the path
 _stream_signal  res 1                   ; number of the last signal passed
-_stream_period  res 3                   ; the next period, with NEW_PERIOD
+_ramp_at        res 1                   ; tail behind the entry that takes the
+                                        ; next period
 _stream_step_dir res 1                  ; bit 0: pulses instead of coils
 _stream_pulse   res 1                   ; longer pulse, in 1/4 us
 _stream_invert_x res 1                  ; 2 = direction output inverted
@@ -108,9 +115,10 @@ count_down      macro   counter
         addwfc  counter + 1, F, A
         endm
 
-; Counts the step just made on one axis, in the tool's or the slack's counter.
-account macro   step, negative, slack, position, slack_counter
-        local   is_slack, down, slack_down, done
+; Counts the step just made on one axis, in the tool's or the slack's counter;
+; the tool's takes 10 cycles either way, the slack's 12, behind the interrupt.
+account macro   step, negative, slack, position, is_slack, done
+        local   down
         btfss   _stream_next, step, A
         bra     done
         btfsc   _stream_next, slack, A
@@ -120,29 +128,29 @@ account macro   step, negative, slack, position, slack_counter
         count_up position
         bra     done
 down:   count_down position
-        bra     done
-is_slack:
-        btfsc   _stream_next, negative, A
-        bra     slack_down
-        count_up slack_counter
-        bra     done
-slack_down:
-        count_down slack_counter
 done:
+        endm
+
+account_slack macro negative, counter, is_slack, done
+        local   up
+is_slack:
+        btfss   _stream_next, negative, A
+        bra     up
+        count_down counter
+        bra     done
+up:     count_up counter
+        bra     done
         endm
 
 ; Turns one motor's phase by a step and looks its pattern up (FSR0H = 0).
 advance macro   step, negative, phase, table, pattern
-        local   minus, look_up, done
+        local   done
         btfss   _stream_next, step, A
         bra     done
         movf    _phase_step, W, A
         btfsc   _stream_next, negative, A
-        bra     minus
+        sublw   0
         addwf   phase, W, A
-        bra     look_up
-minus:  subwf   phase, W, A
-look_up:
         andlw   7
         movwf   phase, A
         addlw   LOW(table)
@@ -155,13 +163,13 @@ code_step       code
 step_interrupt:
         bcf     PIR2, CCP2IF, A
         btfsc   _stream_flags, WAITING, A
-        bra     schedule
+        bra     waited
         movff   _pattern_z, LATB
         movff   _pattern_x, LATD
         btfsc   _stream_next, ORDER, A
         bra     order
-        account STEP_X, X_NEGATIVE, SLACK_X, _position_x, _slack_x
-        account STEP_Z, Z_NEGATIVE, SLACK_Z, _position_z, _slack_z
+        account STEP_X, X_NEGATIVE, SLACK_X, _position_x, is_slack_x, done_x
+        account STEP_Z, Z_NEGATIVE, SLACK_Z, _position_z, is_slack_z, done_z
 
         btfss   _stream_next, ADVANCES, A
         bra     next
@@ -185,12 +193,20 @@ take:
         movlw   HIGH(_step_ring)
         movwf   FSR0H, A
         movff   POSTINC0, _stream_next
-        movff   INDF0, stretch
-        movlw   2
-        addwf   _stream_tail, F, A
+        movff   POSTINC0, stretch
+        movf    FSR0L, W, A
+        movwf   _stream_tail, A
         clrf    FSR0H, A
         btfsc   _stream_next, ORDER, A
         bra     order_interval
+        cpfseq  _ramp_at, A
+        bra     patterns
+        movff   _stream_period, period
+        movff   _stream_period + 1, period + 1
+        movff   _stream_period + 2, period + 2
+        movff   _stream_count, _ramp_count
+        movff   stretch, _ramp_stretch
+        bsf     PIR2, TMR3IF, A
 patterns:
         btfsc   _stream_step_dir, 0, A
         bra     pulses
@@ -199,30 +215,21 @@ patterns:
 patterns_known:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
-        btfss   _stream_flags, NEW_PERIOD, A
-        bra     interval
-        movff   _stream_period, period
-        movff   _stream_period + 1, period + 1
-        movff   _stream_period + 2, period + 2
-        bcf     _stream_flags, NEW_PERIOD, A
-interval:
-        movff   period, remain
-        movff   period + 1, remain + 1
-        movff   period + 2, remain + 2
         movf    stretch, W, A
-        bnz     stretched
-        bra     schedule
-stretched:
+        bz      straight
         ; PROD belongs to the program interrupted here
         movff   PRODL, save_fsr0
         movff   PRODH, save_fsr0 + 1
         mulwf   period + 1, A
         movf    PRODL, W, A
-        addwf   remain, F, A
+        addwf   period, W, A
+        movwf   remain, A
         movf    PRODH, W, A
-        addwfc  remain + 1, F, A
+        addwfc  period + 1, W, A
+        movwf   remain + 1, A
         movlw   0
-        addwfc  remain + 2, F, A
+        addwfc  period + 2, W, A
+        movwf   remain + 2, A
         movf    stretch, W, A
         mulwf   period + 2, A
         movf    PRODL, W, A
@@ -242,7 +249,6 @@ stretched:
 schedule:
         movf    remain + 2, W, A
         bnz     half_turn
-        bcf     _stream_flags, WAITING, A
         movf    remain, W, A
         addwf   CCPR2L, W, A
         movwf   remain, A
@@ -252,6 +258,18 @@ schedule:
         movff   remain, CCPR2L
         retfie  FAST
 
+straight:
+        movff   period, remain
+        movff   period + 1, remain + 1
+        movff   period + 2, remain + 2
+        bra     schedule
+
+        account_slack X_NEGATIVE, _slack_x, is_slack_x, done_x
+        account_slack Z_NEGATIVE, _slack_z, is_slack_z, done_z
+
+waited:
+        bcf     _stream_flags, WAITING, A
+        bra     schedule
 half_turn:
         bsf     _stream_flags, WAITING, A
         btg     CCPR2H, 7, A
@@ -290,10 +308,15 @@ pulse_wait:
         bra     patterns_known
 
 ; Interval before an order: none for most (as short as can be), for a wait
-; its milliseconds: stretch * 12,000.
+; its milliseconds: stretch * 12,000. It has no speed; one that was meant for
+; it waits for the entry behind.
 order_interval:
         movff   save_fsr0 + 1, FSR0H
         movff   save_fsr0, FSR0L
+        xorwf   _ramp_at, W, A          ; W is the tail
+        movlw   2
+        btfsc   STATUS, Z, A
+        addwf   _ramp_at, F, A
         clrf    remain + 2, A
         clrf    remain + 1, A
         movlw   NO_INTERVAL
@@ -304,6 +327,7 @@ order_interval:
         bz      wait_interval
         bra     schedule
 wait_interval:
+        bsf     _stream_flags, STOOD, A
         movff   PRODL, save_fsr0
         movff   PRODH, save_fsr0 + 1
         movf    stretch, W, A

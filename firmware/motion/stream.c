@@ -7,6 +7,7 @@
 
 #define CCP2IE_MASK 0x01 /* PIE2 */
 #define CCP2IF_MASK 0x01 /* PIR2 */
+#define TMR3IE_MASK 0x02 /* PIE2: the ramp's, raised by the step interrupt */
 
 #define CCP_COMPARE_INTERRUPT 0x0A /* CCP2CON: match raises CCP2IF only */
 #define TIMER1_FREE_RUNNING 0x81   /* T1CON: 16-bit access, 12 MHz, on */
@@ -44,7 +45,8 @@ void stream_init(void)
 {
     CCP2CON = CCP_COMPARE_INTERRUPT;
     T1CON = TIMER1_FREE_RUNNING;
-    IPR2 |= CCP2IE_MASK;
+    IPR2 = CCP2IE_MASK; /* all else is of low priority */
+    PIE2 |= TMR3IE_MASK;
 }
 
 void stream_set_coils(uint8_t mode, uint8_t invert_x, uint8_t invert_z)
@@ -136,7 +138,7 @@ void stream_thaw(void)
 void stream_start(void)
 {
     stream_low = STREAM_ENTRIES;
-    stream_flags &= STREAM_NEW_PERIOD;
+    stream_flags = STREAM_STOOD;
     stream_thaw();
 }
 

@@ -39,7 +39,7 @@
 #define STREAM_ACTIVE 0x01
 #define STREAM_WAITING 0x02
 #define STREAM_DRY 0x04
-#define STREAM_NEW_PERIOD 0x08 /* stream_period is to be taken over */
+#define STREAM_STOOD 0x08 /* before the entry to come; for the ramp */
 
 #define STREAM_ENTRIES 127u /* one of 128 stays free */
 
@@ -52,7 +52,6 @@ extern volatile uint8_t stream_flags;
 extern volatile uint8_t stream_signal;
 extern volatile uint8_t stream_pulse;  /* step pulse beyond 5 us, 1/4 us */
 extern volatile uint16_t stream_count; /* entries that advanced the path */
-extern volatile uint8_t stream_period[3];
 extern volatile int16_t position_x;
 extern volatile int16_t position_z;
 extern volatile int16_t slack_x;

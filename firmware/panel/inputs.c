@@ -9,8 +9,9 @@
 
 volatile uint8_t inputs_state;
 
-static uint8_t count_low;
-static uint8_t count_high;
+static uint8_t first; /* reading of this millisecond */
+static uint8_t lead_low;
+static uint8_t lead_high;
 static uint8_t seen; /* state at the last inputs_take_presses() */
 
 static uint8_t raw_levels(void)
@@ -49,13 +50,23 @@ void inputs_init(void)
     seen = inputs_state;
 }
 
+void inputs_read(void)
+{
+    first = raw_levels();
+}
+
 void inputs_tick(void)
 {
     uint8_t changed = raw_levels() ^ inputs_state;
+    uint8_t count;
+    uint8_t flips;
 
-    count_low = (uint8_t) ~(count_low & changed);
-    count_high = count_low ^ (count_high & changed);
-    inputs_state ^= changed & count_low & count_high;
+    changed &= first ^ inputs_state;
+    count = changed | lead_low | lead_high;
+    flips = changed & lead_low & lead_high;
+    lead_high ^= count & (uint8_t) ~(changed ^ lead_low);
+    lead_low ^= count;
+    inputs_state ^= flips;
 }
 
 uint8_t inputs_take_presses(void)

@@ -3,11 +3,13 @@
  *
  * SPDX-License-Identifier: Apache-2.0
  *
- * inputs_tick() samples all of them every millisecond in the low-priority
- * interrupt; an input changes its bit here only after four equal samples in
- * a row, so a pulse shorter than 3 ms never counts and a change is seen 3 to
- * 4 ms late. The four-sample counters are two bits per input, held in two
- * bytes and advanced for all inputs at once.
+ * Sampled every millisecond in the low-priority interrupt. A sample is the
+ * majority of two readings and the bit as it is, so a pulse that is over
+ * before the second reading does not count. A bit changes when four more
+ * samples were against it than for it: a pulse shorter than 3 ms never
+ * counts, a change is seen 3 to 4 ms late, and interference during that time
+ * adds 2 ms for each sample that it hits. The leads are two bits per input,
+ * held in two bytes and counted for all inputs at once.
  */
 #ifndef INPUTS_H
 #define INPUTS_H
@@ -29,7 +31,9 @@ extern volatile uint8_t inputs_state;
 /* Takes the present levels as they are; call once after reset. */
 void inputs_init(void);
 
-/* Samples and filters; low-priority interrupt, once a millisecond. */
+/* First reading, then the second one and the filter: low-priority interrupt,
+   once a millisecond, with other work between them. */
+void inputs_read(void);
 void inputs_tick(void);
 
 /* Buttons pressed since the last call, each press reported once. */

@@ -8,14 +8,22 @@
 #define EECON1_WR 0x02
 #define EECON1_WREN 0x04
 
+uint8_t eeprom_busy(void)
+{
+    return EECON1 & EECON1_WR;
+}
+
 uint8_t eeprom_read(uint8_t address)
 {
+    while (eeprom_busy()) {
+        __asm__("clrwdt");
+    }
     EEADR = address;
     EECON1 = EECON1_RD;
     return EEDATA;
 }
 
-void eeprom_write(uint8_t address, uint8_t value)
+void eeprom_start(uint8_t address, uint8_t value)
 {
     uint8_t interrupts = INTCON & 0xC0;
 
@@ -29,9 +37,12 @@ void eeprom_write(uint8_t address, uint8_t value)
     EECON2 = 0x55;
     EECON2 = 0xAA;
     EECON1 |= EECON1_WR;
+    EECON1 &= (uint8_t)~EECON1_WREN;
     INTCON |= interrupts;
-    while (EECON1 & EECON1_WR) {
-        __asm__("clrwdt");
-    }
-    EECON1 = 0;
+}
+
+void eeprom_write(uint8_t address, uint8_t value)
+{
+    eeprom_start(address, value);
+    eeprom_read(address);
 }

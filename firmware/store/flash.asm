@@ -98,6 +98,9 @@ copy:
         tblrd*-                         ; back into the row being written
         movlw   0x84                    ; EEPGD, WREN
 unlock:
+        clrwdt
+        btfsc   EECON1, WR, A           ; the EEPROM may be at it
+        bra     unlock
         banksel saved_intcon
         movwf   EECON1, A
         movff   INTCON, saved_intcon

@@ -5,7 +5,7 @@
 #include "link/crc.h"     /* crc16_update */
 #include "store/eeprom.h" /* slots */
 
-#define FORMAT 1
+#define FORMAT 2
 #define BLANK 0xFF
 #define VALUES_AT 2
 #define CRC_AT (VALUES_AT + 2 * SETTING_COUNT)
@@ -32,7 +32,7 @@ static uint16_t record_crc(uint8_t slot)
     uint16_t crc = CRC16_INITIAL;
     uint8_t i;
 
-    for (i = 0; i < CRC_AT; i++) {
+    for (i = 1; i < CRC_AT; i++) {
         crc = crc16_update(crc, eeprom_read(slot + i));
     }
     return crc;
@@ -95,7 +95,7 @@ void settings_save(void)
     uint8_t i;
 
     sequence++;
-    eeprom_write(slot, FORMAT);
+    eeprom_write(slot, BLANK); /* no record until it is complete */
     eeprom_write(slot + 1, sequence);
     for (i = 0; i < 2 * SETTING_COUNT; i++) {
         eeprom_write(slot + VALUES_AT + i, from[i]);
@@ -103,6 +103,7 @@ void settings_save(void)
     crc = record_crc(slot);
     eeprom_write(slot + CRC_AT, (uint8_t)crc);
     eeprom_write(slot + CRC_AT + 1, (uint8_t)(crc >> 8));
+    eeprom_write(slot, FORMAT);
     newest = slot;
 }
 

@@ -81,3 +81,11 @@ def test_bar() -> Path:
 def stepped_pin() -> Path:
     """The metric example."""
     return EXAMPLES / "stepped-pin.toml"
+
+
+@pytest.fixture
+def loaded(tornillo: Tornillo, chip: ScriptedChip, test_bar: Path) -> ScriptedChip:
+    """A chip with the test bar stored and selected."""
+    tornillo("upload", test_bar)
+    chip.selected = 0
+    return chip

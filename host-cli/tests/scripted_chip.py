@@ -33,8 +33,11 @@ from tornillo.protocol import (
     Command,
     ErrorCode,
     HelloData,
+    HomedAxis,
     ImageHeader,
+    ProgressData,
     ResetCause,
+    RunFlag,
     SettingId,
     State,
     StatusData,
@@ -61,8 +64,13 @@ IDLE = StatusData(
     bad_frames=0,
     uptime_ms=1000,
     stream_low=4,
+    spread_x=0,
+    spread_z=1,
+    homed_axes=HomedAxis.X | HomedAxis.Z,
+    warnings=0,
     inputs=0,
 )
+NOTHING_BEGUN = ProgressData(slot=SLOT_NONE, crc=0, operation=0, pass_number=0)
 
 
 def refuse(code: ErrorCode, command: Command = Command.STATUS) -> ChipError:
@@ -97,6 +105,9 @@ class ScriptedChip:
         self.executed: list[Command] = []
         self.feed_percent = 100
         self.step = False
+        self.resumed = False
+        self.progress = NOTHING_BEGUN
+        self.homed_axes = 0
         self.zeroed: list[tuple[int, int]] = []
         self.upload: bytearray | None = None
         self.wanted = (0, 0)
@@ -140,20 +151,30 @@ class ScriptedChip:
             self.status = self.coming.pop(0)
         return RESPONSES[Command.STATUS].pack(*self.status)
 
-    def do_home(self, _payload: bytes) -> bytes:
+    def do_home(self, payload: bytes) -> bytes:
         """HOME."""
+        self.homed_axes = payload[0]
         self.status = self.status._replace(state=State.HOMING)
         return b""
 
     def do_run(self, payload: bytes) -> bytes:
         """RUN."""
         slot = self.selected if payload[0] == SLOT_NONE else payload[0]
+        self.resumed = bool(payload[1] & RunFlag.RESUME)
+        if self.resumed:
+            slot = self.progress.slot
+            if slot == SLOT_NONE:
+                raise refuse(ErrorCode.NOTHING_TO_RESUME)
         if slot not in self.slots:
             raise refuse(ErrorCode.NO_PART)
         self.status = self.status._replace(state=State.RUNNING, slot=slot)
         self.feed_percent = 100
-        self.step = bool(payload[1])
+        self.step = bool(payload[1] & RunFlag.STEP)
         return b""
+
+    def do_progress(self, _payload: bytes) -> bytes:
+        """PROGRESS."""
+        return RESPONSES[Command.PROGRESS].pack(*self.progress)
 
     def do_hold(self, _payload: bytes) -> bytes:
         """HOLD."""

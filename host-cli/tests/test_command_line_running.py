@@ -5,27 +5,27 @@ import json
 import signal
 import sys
 import threading
-from pathlib import Path
 
 import pytest
 from console import Tornillo
 from scripted_chip import IDLE, ScriptedChip, ScriptedPort
 
-from tornillo.protocol import Alarm, Command, ErrorCode, ResetCause, State, StatusData, StatusFlag
+from tornillo.protocol import (
+    Alarm,
+    Command,
+    ErrorCode,
+    MachineWarning,
+    ResetCause,
+    State,
+    StatusData,
+    StatusFlag,
+)
 
 CUTTING = IDLE._replace(
     state=State.RUNNING, slot=0, operation=1, operations=2, pass_number=1, passes=4, permille=100
 )
 NEXT_PASS = CUTTING._replace(pass_number=2, permille=350)
 FINISHED = IDLE._replace(slot=0, permille=1000)
-
-
-@pytest.fixture
-def loaded(tornillo: Tornillo, chip: ScriptedChip, test_bar: Path) -> ScriptedChip:
-    """A chip with the test bar stored and selected."""
-    tornillo("upload", test_bar)
-    chip.selected = 0
-    return chip
 
 
 def interrupt_when(chip: ScriptedChip, coming: int) -> None:
@@ -47,8 +47,36 @@ def test_home_waits_for_the_end_and_tells_the_dead_steps(
     homing = IDLE._replace(state=State.HOMING, flags=0)
     chip.coming = [homing, homing, IDLE]
     result = tornillo("home")
-    assert (result.exit_code, result.stdout) == (0, "homed; dead steps: X 23, Z 31\n")
+    assert result.exit_code == 0
+    assert result.stdout == "homed; dead steps: X 23, Z 31; spread: X 0, Z 1\n"
+    assert "Warning" not in result.stderr
     assert chip.coming == []
+    assert chip.homed_axes == 3
+
+
+@pytest.mark.parametrize(
+    ("axis", "bit", "found"),
+    [
+        ("x", 1, "homed; dead steps: X 23; spread: X 0\n"),
+        ("z", 2, "homed; dead steps: Z 31; spread: Z 1\n"),
+    ],
+)
+def test_home_of_one_axis_tells_the_chip_and_shows_that_axis(
+    tornillo: Tornillo, chip: ScriptedChip, axis: str, bit: int, found: str
+) -> None:
+    chip.coming = [IDLE]
+    result = tornillo("home", "--axis", axis)
+    assert (result.exit_code, result.stdout) == (0, found)
+    assert chip.homed_axes == bit
+
+
+def test_home_warns_of_dead_steps_that_have_changed(tornillo: Tornillo, chip: ScriptedChip) -> None:
+    chip.coming = [IDLE._replace(warnings=MachineWarning.DEAD_Z)]
+    result = tornillo("home")
+    assert result.exit_code == 0
+    assert "Warning: the dead steps of Z are not what the homing before found" in result.stderr
+    assert "look for a loose coupling, nut or screw of Z" in result.stderr
+    assert "dead steps of X" not in result.stderr
 
 
 def test_home_tells_why_it_failed(tornillo: Tornillo, chip: ScriptedChip) -> None:
@@ -283,7 +311,9 @@ def test_status_of_an_idle_lathe(tornillo: Tornillo, loaded: ScriptedChip) -> No
     assert lines["state"].strip() == "idle"
     assert lines["tool"].strip() == "diameter 25.404 mm, z 0.000 mm"
     assert lines["machine"].strip() == "X -1789, Z -8000 steps"
-    assert lines["dead steps"].strip() == "X 23, Z 31"
+    assert lines["dead steps"].strip() == "X 23, Z 31; spread X 0, Z 1"
+    assert lines["last start"].strip() == "power-on"
+    assert "unfinished" not in lines
     assert lines["part"].strip() == "test-bar (slot 0)"
     assert lines["firmware"].strip() == "0.1.0, serial number T0000001"
 

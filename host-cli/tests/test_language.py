@@ -181,12 +181,12 @@ def test_help_is_shown_in_spanish_from_its_first_to_its_last_word() -> None:
     assert "Busca los interruptores de límite y mide los pasos muertos." in shown
     assert "Muestra este mensaje y termina." in shown
     shown = spanish("run", "--help")
-    assert "Ejemplo: tornillo run test-bar --follow" in shown
+    assert "Ejemplos: tornillo run test-bar --follow" in shown
     assert "Muestra el progreso hasta el final." in shown
     shown = spanish("settings", "get", "--help")
     assert "Imprime solo el valor de NAME;" in shown
     english = CliRunner(env={"TORNILLO_LANG": "en"}).invoke(main, ["run", "--help"]).output
-    assert "Example: tornillo run test-bar --follow" in english
+    assert "Examples: tornillo run test-bar --follow" in english
 
 
 def test_refusals_are_explained_in_spanish(

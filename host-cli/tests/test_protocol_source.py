@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tornillo import protocol
-from tornillo.protocol_texts import ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS
+from tornillo.protocol_texts import ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS, WARNING_TEXTS
 
 ROOT = Path(__file__).resolve().parents[2]
 LINK = ROOT / "firmware" / "link"
@@ -102,6 +102,9 @@ def test_the_generator_refuses_a_source_that_cannot_work(
         (protocol.Axis, "AXIS"),
         (protocol.State, "STATE"),
         (protocol.StatusFlag, "STATUS_FLAG"),
+        (protocol.HomedAxis, "HOMED_AXIS"),
+        (protocol.MachineWarning, "WARNING"),
+        (protocol.RunFlag, "RUN_FLAG"),
         (protocol.Alarm, "ALARM"),
         (protocol.ResetCause, "RESET_CAUSE"),
         (protocol.ErrorCode, "ERROR"),
@@ -137,4 +140,5 @@ def test_chip_and_host_have_the_same_message_sizes() -> None:
 def test_every_code_is_explained() -> None:
     assert set(ERROR_TEXTS) == set(protocol.ErrorCode)
     assert set(ALARM_TEXTS) == set(protocol.Alarm)
+    assert set(WARNING_TEXTS) == set(protocol.MachineWarning)
     assert set(REFUSAL_TEXTS) == set(protocol.Refusal)

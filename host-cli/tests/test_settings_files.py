@@ -125,11 +125,11 @@ def test_a_refusal_in_mid_load_says_how_much_is_stored(
     tornillo: Tornillo, chip: ScriptedChip, tmp_path: Path
 ) -> None:
     path = tmp_path / "mine.toml"
-    path.write_text("[settings]\nhome_rate = 700\nlatch_rate = 50\n", encoding="utf-8")
+    path.write_text("[settings]\nhome_rate = 700\nlatch_rate = 60\n", encoding="utf-8")
     chip.busy_at = SettingId.LATCH_RATE
     result = tornillo("settings", "load", path)
     assert result.exit_code == 1
-    assert "latch_rate stays 100 step/s (20 to 100 step/s)" in result.stderr
+    assert "latch_rate stays 50 step/s (20 to 100 step/s)" in result.stderr
     assert "1 of 2 changes are stored" in result.stderr
     assert chip.values[SettingId.HOME_RATE] == 700
 

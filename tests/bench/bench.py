@@ -12,6 +12,7 @@ from link_figures import link_figures
 from measure import BenchError, Figures, command_line, cut_test_bar, sizes
 from motion_figures import motion_figures
 from page import fill
+from safety_figures import safety_figures
 from shape_figures import shape_figures
 from stop_figures import stop_figures
 
@@ -24,7 +25,7 @@ def figures() -> Figures:
     """Everything that is measured, with the date and the computer."""
     # These run in copies of this process, which must not have a chip of its own yet.
     link, shapes, stops = link_figures(), shape_figures(), stop_figures()
-    calibration = calibration_figures()
+    calibration, safety = calibration_figures(), safety_figures()
     bar = cut_test_bar()
     motion = motion_figures()
     worst = max(bar["isr_worst_cycles"], motion["isr_worst_cycles"])
@@ -39,6 +40,7 @@ def figures() -> Figures:
         **calibration,
         **motion,
         **shapes,
+        **safety,
         "isr_worst_cycles": worst,
     }
 

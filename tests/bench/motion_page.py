@@ -13,7 +13,7 @@ PARTS = {
     "arc_begin": "begin of an arc",
     "arc_next": "begin of an octant",
     "plan_next": "plan of a segment",
-    "ramp_tick": "ramp, each millisecond",
+    "ramp_tick": "ramp, each new speed",
 }
 
 

@@ -5,6 +5,7 @@ import re
 
 from measure import Figures
 from motion_page import motion_rows
+from safety_page import safety_rows
 from shape_page import shape_rows
 from stop_figures import stop_rows
 from tornillo import __version__
@@ -78,6 +79,7 @@ def rows(found: Figures) -> list[Row]:
         ),
         *stop_rows(found),
         *motion_rows(found),
+        *safety_rows(found),
         *shape_rows(found),
         ("* `sim_realtime_factor`, cutting", f"{found['sim_realtime_factor']:.1f}", ""),
         ("* `sim_realtime_factor_idle`", f"{found['sim_realtime_factor_idle']:.1f}", ""),

@@ -18,7 +18,8 @@ from tornillo.language import use
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 STORED = "{part} is stored in slot {slot}, {image} bytes, verified"
-HOMED = "homed; dead steps: X {dead_x}, Z {dead_z}"
+HOMED = "homed; {status}"
+FOUND = "dead steps: {dead}; spread: {spread}"
 PAGES = sorted(DOCS.rglob("*.md"))
 
 
@@ -93,7 +94,8 @@ def test_what_the_spanish_guide_says_is_printed_is_printed(
     ):
         assert f"\n{say(message)}\n" in later
     assert say(STORED).format(part="my-part", slot=0, image=91) in later
-    assert say(HOMED).format(dead_x=23, dead_z=31) in later
+    found = say(FOUND).format(dead="X 23, Z 31", spread="X 0, Z 0")
+    assert f"\n{say(HOMED).format(status=found)}\n" in later
     use("en")
 
 

@@ -73,13 +73,52 @@ def test_a_press_that_bounces_for_five_milliseconds_counts_once(button: str) -> 
 
 @on_a_new_chip
 def test_a_button_held_down_acts_once() -> None:
+    bench = little_pin.lathe_with_pin()
+    bench.chip.drive(PINS["run"], Drive.LOW)
+    bench.wait_for(State.HOMING, 0.1)
+    bench.wait_for(State.IDLE)
+    bench.run(0.1)
+    assert bench.state is State.IDLE
+    assert bench.homed
+    bench.chip.drive(PINS["run"], Drive.OPEN)
+    bench.run(0.02)
+    assert bench.state is State.IDLE
+    assert not bench.status().finished
+
+
+@on_a_new_chip
+def test_a_part_is_started_when_the_button_is_let_go() -> None:
     bench = little_pin.homed_lathe_with_pin()
     bench.chip.drive(PINS["run"], Drive.LOW)
+    bench.run(0.5)
+    assert bench.state is State.IDLE
+    bench.chip.drive(PINS["run"], Drive.OPEN)
     bench.wait_for(State.RUNNING, 0.1)
     bench.wait_for(State.IDLE)
     bench.run(0.1)
     assert bench.state is State.IDLE
     assert bench.status().finished
+
+
+@on_a_new_chip
+def test_interference_and_bounce_on_a_button_delay_it_and_no_more() -> None:
+    bench = Bench()
+    bench.run(0.01)
+    watch_inputs(bench)
+    noise = random.Random(7)
+    for level in (Drive.LOW, Drive.OPEN) * 20:
+        bounces_until = bench.chip.seconds + 0.005
+        end = bench.chip.seconds + 0.020
+        while bench.chip.seconds < end:
+            if bench.chip.seconds < bounces_until:
+                bench.chip.drive(PINS["hold"], noise.choice((Drive.LOW, Drive.OPEN)))
+                bench.run(noise.uniform(5e-5, 5e-4))
+            else:
+                bench.chip.drive(PINS["hold"], Drive.LOW if level is Drive.OPEN else Drive.OPEN)
+                bench.run(noise.uniform(1e-6, 1e-5))
+                bench.chip.drive(PINS["hold"], level)
+                bench.run(noise.uniform(1e-5, 1.9e-4))
+    assert changes(bench, MASKS["hold"]) == [True, False] * 20
 
 
 @on_a_new_chip

@@ -23,7 +23,7 @@ FEED, LONG = 400, 1000
 WITHIN = 0.01
 #: The chip multiplies the feed by so many 256ths; it rounds to the nearest.
 ROUNDING = 0.5 / 256
-#: The speed changes by so much in a millisecond, steps/s; when in one it starts is chance.
+#: The speed changes by so much in a tick of the ramp, steps/s; when in one it starts is chance.
 SPEED_STEP = 8
 
 
@@ -94,7 +94,7 @@ def test_the_ramp_to_the_new_speed_is_that_of_the_acceleration() -> None:
     speeds = [CYCLES_PER_SECOND / (after - time) for time, after in pairwise(times)]
     assert speeds == sorted(speeds)
     for (slow, fast), (time, after) in zip(pairwise(speeds), pairwise(times), strict=False):
-        # 8,000 step/s^2 in steps of a millisecond: one more may fall into an interval.
+        # 8,000 step/s^2 in steps of about a millisecond: one more may fall into an interval.
         assert fast - slow <= 8.0 * ((after - time) / 12000 + 1) + 1
 
 

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import random
+from functools import partial
+
 import pytest
 from simulated import little_pin
 from simulated.bench import Bench
-from simulated.processes import on_a_new_chip
-from tornillo.protocol import ResetCause, State
-from virtual_lathe.chip import NonVolatile, Reset
+from simulated.processes import branch, on_a_new_chip
+from tornillo.protocol import ErrorCode, ResetCause, State
+from virtual_lathe.chip import CYCLES_PER_SECOND, NonVolatile, Reset
 
 STACK_POINTER = 0xFFC
 BRANCH_TO_ITSELF = b"\xff\xd7"
@@ -91,6 +94,55 @@ def test_a_stack_overflow_is_told_by_its_cause() -> None:
     assert bench.chip.resets[-1][1] in (Reset.STACK_FULL, Reset.STACK_EMPTY)
     bench.run(0.001)
     assert_quiet_after_reset(bench, ResetCause.STACK)
+
+
+@pytest.mark.parametrize(("moving", "moments"), [("homing", 60), ("running", 140)])
+@on_a_new_chip
+def test_a_brown_out_at_any_moment_of_motion_ends_it_and_is_told(moving: str, moments: int) -> None:
+    chance = random.Random(moments)
+    if moving == "homing":
+        bench = little_pin.lathe_with_pin(start_x=-200, start_z=-300)
+        bench.host.home()
+        lasts = 5.0
+    else:
+        bench = little_pin.homed_lathe_with_pin()
+        bench.host.run()
+        lasts = 1.9
+    bench.expect_broken("coil pattern legal", "at most one full step at a time", "no step lost")
+    start = bench.chip.cycle
+
+    def brown_out(completed: tuple[int, int]) -> tuple[int, int]:
+        bench.unplug()
+        bench.chip.reset(Reset.BROWN_OUT)
+        bench.run(0.001)
+        assert_quiet_after_reset(bench, ResetCause.BROWN_OUT)
+        assert bench.refusal(bench.host.run) is ErrorCode.NOT_HOMED
+        begun = bench.host.progress()
+        told = (0, 0) if begun is None else (begun.operation, begun.pass_number)
+        # Written 40 ms after the pass at the latest: until then the one before is told.
+        assert told in (completed, before.get(completed, completed))
+        return told
+
+    before: dict[tuple[int, int], tuple[int, int]] = {}
+    here = completed = (0, 0)
+    moved = 0
+    for cycle in sorted(chance.randrange(round(lasts * CYCLES_PER_SECOND)) for _ in range(moments)):
+        bench.lathe.run_to(start + cycle)
+        moved += bench.moving
+        now = (bench.chip.variable("machine_state"), bench.status().pass_number)
+        if moving == "running" and now != here:
+            here = now
+            status = bench.status()
+            done = PLACES[: PLACES.index((status.operation, status.pass_number))]
+            if done:
+                before[done[-1]] = completed
+                completed = done[-1]
+        branch(partial(brown_out, completed))
+    assert moved > moments * 0.9
+
+
+#: Operations and passes of the little pin, in order.
+PLACES = [(1, 1), (2, 1), (2, 2), (2, 3), (2, 4)]
 
 
 @pytest.mark.parametrize("seed", range(3))

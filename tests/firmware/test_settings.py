@@ -14,7 +14,8 @@ from tornillo.protocol import SETTINGS, Alarm, Axis, Command, ErrorCode, Setting
 from tornillo.settings import store_all
 from virtual_lathe.chip import NonVolatile
 
-FIRST, SECOND = 0x00, 0x70
+FIRST, SECOND = 0x00, 0x50
+FORMAT = 2
 #: An EEPROM write takes 4 ms.
 CUT_EVERY_S = 1.7e-3
 RECORD_BYTES = 2 + 2 * len(SETTINGS) + 2
@@ -43,9 +44,9 @@ def damage(bench: Bench, *addresses: int) -> None:
 def number_the_record(bench: Bench, sequence: int) -> None:
     """Give the first record another sequence number, with the CRC that belongs to it."""
     memory = bench.chip.save()
-    record = bytes([1, sequence]) + memory.eeprom[FIRST + 2 : FIRST + RECORD_BYTES - 2]
+    record = bytes([sequence]) + memory.eeprom[FIRST + 2 : FIRST + RECORD_BYTES - 2]
     record += crc16(record).to_bytes(2, "little")
-    eeprom = record + memory.eeprom[RECORD_BYTES:]
+    eeprom = bytes([FORMAT]) + record + memory.eeprom[RECORD_BYTES:]
     bench.chip.restore(NonVolatile(memory.flash, eeprom))
 
 
@@ -222,7 +223,8 @@ def test_zero_tells_where_the_tool_stands_and_is_stored() -> None:
 def test_a_zero_outside_its_range_is_refused() -> None:
     bench = Bench()
     bench.home()
+    before = values(bench)
     for axis, steps in ((Axis.X, -1000), (Axis.Z, 32001), (Axis.Z, -32001), (Axis.X, 40000)):
         change = partial(bench.host.zero, axis, steps)
         assert bench.refusal(change) is ErrorCode.OUT_OF_RANGE
-    assert values(bench) == defaults()
+    assert values(bench) == before

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from itertools import pairwise
 
@@ -20,8 +21,10 @@ CYCLES_PER_MS = CYCLES_PER_SECOND // 1000
 WORST_CYCLES = 150
 PULL_IN = 5000
 ACCELERATION, START_RATE = 8000, 400
-#: The speed changes once in a millisecond; this is one such change.
-SPEED_STEP = ACCELERATION / 1000
+#: The speed changes in steps of what it gains in 1/1024 s.
+SPEED_STEP = ACCELERATION / 1024
+#: An interrupt waits for the end of the instruction before it, which may take two cycles.
+LATENCY = 1
 #: Cycles an order without a time of its own takes, 20 us.
 ORDER_CYCLES = 240
 END, WAIT, OUTPUT, SIGNAL = 0x80, 0x81, 0x82, 0x83
@@ -81,41 +84,40 @@ def test_steps_come_at_their_exact_time_whatever_usb_does(
         link(bench)
     steps_made = planned.steps()
     assert len(steps_made) >= steps
-    assert [step.interval for step in steps_made] == [step.period for step in steps_made]
+    assert all(abs(step.interval - step.period) <= LATENCY for step in steps_made)
     cruise = CYCLES_PER_SECOND // rate
     slowest = cruise if rate <= START_RATE else CYCLES_PER_SECOND // START_RATE
-    assert steps_made[0].interval == slowest
-    assert {step.interval for step in steps_made[-int(cruise_steps) :]} == {cruise}
+    assert steps_made[0].period == slowest
+    assert {step.period for step in steps_made[-int(cruise_steps) :]} == {cruise}
     assert bench.lathe.interrupt_cost().worst <= WORST_CYCLES
 
 
 @pytest.mark.parametrize("rate", [999, 4000])
 @on_a_new_chip
-def test_the_ramp_is_that_of_the_acceleration_in_steps_of_a_millisecond(rate: int) -> None:
+def test_the_ramp_is_that_of_the_acceleration_over_the_way(rate: int) -> None:
     bench = seeking_lathe(rate)
     planned = Planned(bench)
     bench.host.home()
     bench.run(0.1 + ramp_seconds(rate))
-    steps = planned.steps()
-    begin = steps[0].cycle
-    speeds = []
-    for step in steps:
-        # The ideal speed at the step's begin: a straight line of the time. The chip's is that
-        # of the last whole millisecond, in periods of whole cycles; the ramp starts with a tick
-        # up to a millisecond behind the first step.
-        ideal = START_RATE + ACCELERATION * (step.cycle - begin) / CYCLES_PER_SECOND
-        speed = CYCLES_PER_SECOND / step.interval
+    periods = [step.period for step in planned.steps()]
+    speeds = [CYCLES_PER_SECOND / period for period in periods]
+    for way, speed in enumerate(speeds):
+        # The ideal speed when the step begins. That of the chip changes every speed / 1024 + 1
+        # steps, by what an ideal ramp gains on these, and in whole ticks; periods are whole cycles.
+        behind = 2 * (int(speed) // 1024 + 1)
+        ideal, least = (
+            math.sqrt(START_RATE**2 + 2 * ACCELERATION * max(0, steps))
+            for steps in (way, way - behind)
+        )
         rounding = speed * speed / CYCLES_PER_SECOND
         assert speed <= min(rate, ideal + SPEED_STEP) + rounding
-        assert speed >= min(rate, ideal - 2 * SPEED_STEP) - rounding
-        speeds.append(speed)
+        assert speed >= min(rate, least - SPEED_STEP) - rounding
     assert max(speeds) == pytest.approx(rate, rel=1e-3)
     assert speeds == sorted(speeds)
-    # Every change is of whole millisecond steps, to a cycle: nothing else goes into the speed.
-    for step in steps:
-        ticks = round((CYCLES_PER_SECOND / step.interval - START_RATE) / SPEED_STEP)
-        speed = min(rate, START_RATE + ticks * SPEED_STEP)
-        assert step.interval == int(CYCLES_PER_SECOND / speed)
+    # Every change is of whole ticks, to a cycle: nothing else goes into the speed.
+    for period, found in zip(periods, speeds, strict=True):
+        speed = min(rate, START_RATE + round((found - START_RATE) / SPEED_STEP) * SPEED_STEP)
+        assert period == int(CYCLES_PER_SECOND * 256 / int(speed * 256))
 
 
 def entries_left(bench: Bench) -> list[int]:
@@ -144,7 +146,7 @@ def test_a_stretched_step_takes_longer_by_so_many_256ths(rate: int, stretch: int
     period = CYCLES_PER_SECOND // rate
     longer = period + stretch * period // 256
     assert len(times) > len(left) - 2
-    assert {after - time for time, after in list(pairwise(times))[1:]} == {longer}
+    assert all(abs(after - time - longer) <= LATENCY for time, after in list(pairwise(times))[1:])
     assert bench.lathe.interrupt_cost().worst <= WORST_CYCLES
 
 

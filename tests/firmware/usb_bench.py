@@ -29,18 +29,20 @@ class UsbBench:
 
     Args:
         serial: the eight bytes of EEPROM where the serial number belongs; blank by default.
+        firmware: another build than the usual one.
     """
 
-    def __init__(self, serial: bytes = b"\xff" * 8) -> None:
+    def __init__(self, serial: bytes = b"\xff" * 8, firmware: Path = FIRMWARE) -> None:
         """Load the firmware into a chip that has just been powered on."""
-        self.chip = Chip(FIRMWARE)
+        self.chip = Chip(firmware)
         kept = self.chip.save()
         after = SERIAL_AT + len(serial)
         eeprom = kept.eeprom[:SERIAL_AT] + serial + kept.eeprom[after:]
         self.chip.restore(NonVolatile(kept.flash, eeprom))
         self.host = UsbHost(self.chip)
         self.toggles = {Token.IN: 0, Token.OUT: 0}
-        in_any_case(RECORDER.add)
+        if firmware == FIRMWARE:
+            in_any_case(RECORDER.add)
         at_the_end(self.assert_no_mistakes)
 
     def enumerate(self) -> UsbBench:

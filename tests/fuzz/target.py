@@ -9,7 +9,7 @@ from collections.abc import Callable
 from firmware.usb_bench import FIRMWARE, UsbBench
 from simulated.processes import branch
 from tornillo.frames import Frame, encode
-from tornillo.protocol import REQUESTS, Command, ErrorCode, SettingId
+from tornillo.protocol import REQUESTS, Command, ErrorCode, RunFlag, SettingId
 from virtual_lathe.chip import Drive
 from virtual_lathe.usb_host import UsbError
 
@@ -96,13 +96,16 @@ class Target:
             ask(Command.PART_INFO, slot)
             ask(Command.PART_READ, slot, 0)
             ask(Command.RUN, slot, 0)
+            ask(Command.RUN, slot, RunFlag.RESUME)
             ask(Command.PART_DELETE, slot)
         bench.ask(99, Command.SERIAL_SET, b"TN-00042")
         ask(Command.ZERO, 0, 0)
         ask(Command.OVERRIDE, 100)
         ask(Command.GOTO, 0, 0, 0)
         ask(Command.TOUCH, 0, 0)
-        for command in (Command.HOLD, Command.RESUME, Command.STOP, Command.RESET, Command.STATUS):
+        for command in (Command.HOLD, Command.RESUME, Command.STOP, Command.RESET):
+            ask(command)
+        for command in (Command.STATUS, Command.PROGRESS):
             ask(command)
         self._uploads(ask)
         bench.ask(1, 0x7F, bytes(56))

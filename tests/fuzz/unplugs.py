@@ -2,9 +2,8 @@
 """The cable pulled and put in again at random moments of upload, status and run.
 
 The part store stays intact, the next connection works, and cutting goes on: the steps are those of
-a run without a cable, at the same cycles. The one thing that USB can shift is the beat of the
-ramps: when the interrupt of the millisecond has to wait for that of USB, a step that falls between
-still sees the speed of the millisecond before. ``SHIFT_CYCLES`` bounds what comes of that.
+a run without a cable, and none comes at another time than there by more than the bound of the
+jitter, whenever in the chip's millisecond the run began.
 """
 
 from __future__ import annotations
@@ -22,11 +21,10 @@ from virtual_lathe.usb_host import UsbError
 
 from fuzz.target import Broken
 
-#: An interrupt waits for the end of the instruction before it, and instructions differ.
-JITTER_CYCLES = 3
-#: 1.1 ms. The speeds of the ramps shift by up to 0.1 ms; a rest is counted in milliseconds, and
-#: one that begins close to the beat can last one longer for it.
-SHIFT_CYCLES = 13_200
+#: 1.0 us, the bound of the jitter: an interrupt waits for the end of the instruction before it.
+JITTER_CYCLES = 12
+#: Before a run some time goes by, so that it begins anywhere in the chip's millisecond.
+BEAT_S = 1e-3
 UPLOAD_S = 0.08
 OUT_MAX_S = 0.08
 RUN_TIMEOUT_S = 20.0
@@ -55,7 +53,6 @@ class Unplugs:
         self._image = little_pin.image()
         self.moments = 0
         self.runs = 0
-        self.exact_runs = 0
         self.worst_cycles = 0
 
     # -- upload ---------------------------------------------------------------------------------
@@ -127,7 +124,6 @@ class Unplugs:
             changes, pulled = branch(partial(self._cut, seed))
             worst = compare(changes, undisturbed, seed)
             self.worst_cycles = max(self.worst_cycles, worst)
-            self.exact_runs += worst <= JITTER_CYCLES
             self.runs += 1
             done += pulled
         self.moments += done
@@ -136,13 +132,15 @@ class Unplugs:
         """Cut the part; without a seed with the cable out from the beginning."""
         bench = self._bench
         lathe = bench.lathe
+        chance = random.Random(seed)
+        if seed is not None:
+            bench.run(chance.random() * BEAT_S)
         bench.host.run()
         pulled = 0
         bench.chip.log_pins(*COILS)
         bench.wait(lambda: bench.moving, BEGIN_S)
         if seed is None:
             lathe.unplug()
-        chance = random.Random(seed)
         end = lathe.seconds + RUN_TIMEOUT_S
         while bench.state is State.RUNNING and lathe.seconds < end:
             if seed is None:
@@ -179,6 +177,6 @@ def compare(changes: list[Change], undisturbed: list[Change], seed: int) -> int:
         abs(cycle - other - shift)
         for (cycle, _), (other, _) in zip(changes, undisturbed, strict=True)
     )
-    if worst > SHIFT_CYCLES:
+    if worst > JITTER_CYCLES:
         raise Broken(f"a step came {worst} cycles off, run {seed}")
     return worst

@@ -167,7 +167,7 @@ def _arrived(walker: Walker, _before: Seen, _moved: bool) -> None:
 
 def _found_contact(walker: Walker, before: Seen, _moved: bool) -> None:
     bench = walker.bench
-    assert before.position[0] - 3 <= bench.position[0] < before.position[0]
+    assert before.position[0] - 3 <= bench.position[0] <= before.position[0]
     assert counts_right(bench)
     assert not moves(bench)
     assert StatusInput.TOUCHED in bench.status().inputs

@@ -38,6 +38,7 @@ CENTRE_OFF = 2  # steps
 #: Machine code of RETURN, and the longest that the queue lasts at the speeds of the walk.
 RETURN = b"\x12\x00"
 QUEUE_S, SLOW_QUEUE_S = 0.5, 1.5
+HEARD_S = 0.2
 #: A bit more than DEADMAN_MS of firmware/config.h.
 SILENCE_S = 0.6
 
@@ -142,10 +143,13 @@ def _dry(walker: Walker) -> None:
     """Keep the main loop from planning for longer than the queue lasts."""
     chip = walker.bench.chip
     memory = chip.save()
-    at = chip.symbols.code("machine_poll")
+    at = chip.symbols.code("make")
     absent = memory.flash[:at] + RETURN + memory.flash[at + len(RETURN) :]
     chip.restore(NonVolatile(absent, memory.eeprom))
-    walker.bench.run(SLOW_QUEUE_S if walker.bench.is_in(State.TOUCHING) else QUEUE_S)
+    end = chip.seconds + (SLOW_QUEUE_S if walker.bench.is_in(State.TOUCHING) else QUEUE_S)
+    while chip.seconds < end:
+        walker.bench.run(HEARD_S)
+        walker.bench.status()  # jogs and touches go on only while a host is heard
     chip.restore(memory)
     walker.bench.run(0.01)
 

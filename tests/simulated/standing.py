@@ -30,7 +30,7 @@ class Limits:
     def braking_steps(self, speed: float) -> float:
         """Return the entries between a hold at a speed and the last step.
 
-        The ramp's own way in steps of a millisecond, and the latency.
+        The ramp's own way in steps of about a millisecond, and the latency.
         """
         above = max(0.0, speed**2 - self.start_rate**2)
         return above / (2 * self.acceleration) + speed / 1000 + LATENCY_STEPS

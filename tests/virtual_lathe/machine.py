@@ -143,6 +143,11 @@ class Machine:
         """Connect tool and work by a chip or a chafed wire, or no longer."""
         self._native.vl_probe_short(int(shorted))
 
+    def place(self, name: AxisName, start: int) -> None:
+        """Put a slide somewhere else by hand, the rotor turned to where pattern 5 holds it."""
+        self._options[name].start = start
+        self._setup(name, self._options[name])
+
     def set_motor_power(self, on: bool) -> None:
         """Switch the motor supply; without it the rotors stay where they are."""
         self._native.vl_motor_power(int(on))

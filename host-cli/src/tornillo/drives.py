@@ -57,8 +57,8 @@ class Drives:
         return min(self.start_x, self.start_z)
 
     def distance(self, rate: float) -> int:
-        """The way to brake from a rate along the path, half steps."""
-        return min(NO_LIMIT, int(rate * rate / self.acceleration))
+        """The way to brake from a rate along the path, half steps, as the chip rounds it."""
+        return min(NO_LIMIT, (int(rate) ** 2 >> 8) * ((1 << 24) // self.acceleration) >> 16)
 
     def capped(self, rate: int) -> int:
         """The rate, or the fastest that can be braked from in time."""

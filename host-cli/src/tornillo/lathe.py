@@ -37,6 +37,9 @@ from tornillo.protocol import (
     Command,
     ErrorCode,
     HelloData,
+    HomedAxis,
+    ProgressData,
+    RunFlag,
     Setting,
     SettingGetData,
     SettingId,
@@ -44,6 +47,7 @@ from tornillo.protocol import (
 )
 from tornillo.status import Status
 from tornillo.store import PartStore
+from tornillo.stored import StoredPart
 from tornillo.watching import StatusCallback, Watch
 
 #: Longer than a request that was lost and is repeated takes.
@@ -144,16 +148,33 @@ class Lathe(PartStore):
         self._watches = [*(old for old in self._watches if old.active), watch]
         return watch
 
-    def home(self) -> None:
-        """Start to look for the limit switches; `status()` tells the end."""
-        self._request(Command.HOME)
+    def home(self, axes: HomedAxis = HomedAxis.X | HomedAxis.Z) -> None:
+        """Start to look for the limit switches, X first; `status()` tells the end."""
+        self._request(Command.HOME, axes)
 
-    def run(self, slot: int | None = None, step: bool = False) -> None:
+    def run(self, slot: int | None = None, step: bool = False, resume: bool = False) -> None:
         """Start to cut the part in `slot`, or the selected one; `status()` tells the rest.
 
-        `step`: pause after each operation.
+        `step`: pause after each operation. `resume`: go on with the part of `progress()`, from
+        the pass that was completed last; that pass is cut once more.
+
+        Raises ChipError (NOTHING_TO_RESUME) when no part, or another one, was begun and not
+        finished.
         """
-        self._request(Command.RUN, SLOT_NONE if slot is None else slot, int(step))
+        if resume:
+            begun = self.progress()
+            if begun is None or slot not in (None, begun.slot):
+                raise ChipError(Command.RUN, ErrorCode.NOTHING_TO_RESUME)
+        flags = RunFlag.STEP * step | RunFlag.RESUME * resume
+        self._request(Command.RUN, SLOT_NONE if slot is None else slot, flags)
+
+    def progress(self) -> ProgressData | None:
+        """The part that was begun and not finished, and its pass completed last.
+
+        The chip knows it without power too. None: there is nothing to resume.
+        """
+        found = ProgressData(*self._numbers(Command.PROGRESS))
+        return None if found.slot == SLOT_NONE else found
 
     def hold(self) -> None:
         """Stop the run so that it can go on."""
@@ -231,6 +252,14 @@ class Lathe(PartStore):
     def zero(self, axis: Axis, steps: int) -> None:
         """Say that the tool now stands at part coordinate `steps` (X: radius) of `axis`."""
         self._request(Command.ZERO, axis, steps)
+
+    def outdated_parts(self) -> list[StoredPart]:
+        """Stored parts made for other step sizes than the settings have: they cannot be cut."""
+        steps = tuple(
+            self.setting(setting).value for setting in (SettingId.STEP_X_NM, SettingId.STEP_Z_NM)
+        )
+        headers = ((part, self.image(part.slot).header) for part in self.parts())
+        return [part for part, made in headers if (made.step_x_nm, made.step_z_nm) != steps]
 
     def setting(self, setting: SettingId) -> SettingGetData:
         """Value and range of a setting."""

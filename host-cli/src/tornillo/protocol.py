@@ -87,6 +87,7 @@ class Command(IntEnum):
     JOG = 0x0B
     GOTO = 0x0C
     TOUCH = 0x0D
+    PROGRESS = 0x0F
     UPLOAD_BEGIN = 0x10
     UPLOAD_DATA = 0x11
     UPLOAD_COMMIT = 0x12
@@ -132,6 +133,27 @@ class StatusFlag(IntFlag):
     MOTION = 0x80
 
 
+class HomedAxis(IntFlag):
+    """Axes in HOME and STATUS."""
+
+    X = 0x01
+    Z = 0x02
+
+
+class MachineWarning(IntFlag):
+    """Bits of the warnings in STATUS."""
+
+    DEAD_X = 0x01
+    DEAD_Z = 0x02
+
+
+class RunFlag(IntFlag):
+    """Bits of the flags in RUN."""
+
+    STEP = 0x01
+    RESUME = 0x02
+
+
 class Alarm(IntEnum):
     """Why the machine stopped."""
 
@@ -146,6 +168,8 @@ class Alarm(IntEnum):
     STOPPED_HOMING = 8
     DEAD_STEPS_SPREAD = 9
     PATH = 11
+    HOME_OPENED_LATE = 12
+    PHASE_DRIFT = 13
     SWITCH_WIRING = 14
     PROBE_UNEXPECTED = 15
 
@@ -189,6 +213,7 @@ class ErrorCode(IntEnum):
     ESTOP = 15
     PROBE_CLOSED = 16
     NOT_FITTED = 17
+    NOTHING_TO_RESUME = 18
     WRONG_WAY = 19
 
 
@@ -263,13 +288,17 @@ class SettingId(IntEnum):
     SPINDLE_MAX = 27
     PROBE_FITTED = 28
     TOUCH_BACK_OFF = 29
+    HOME_PHASE_X = 30
+    HOME_PHASE_Z = 31
+    DEAD_JUMP = 32
+    DRIFT_MAX = 33
 
 
 #: Request payloads; UPLOAD_DATA is followed by its bytes.
 REQUESTS = {
     Command.HELLO: Struct("<"),
     Command.STATUS: Struct("<"),
-    Command.HOME: Struct("<"),
+    Command.HOME: Struct("<B"),
     Command.RUN: Struct("<BB"),
     Command.HOLD: Struct("<"),
     Command.RESUME: Struct("<"),
@@ -280,6 +309,7 @@ REQUESTS = {
     Command.JOG: Struct("<iiHH"),
     Command.GOTO: Struct("<iiH"),
     Command.TOUCH: Struct("<ii"),
+    Command.PROGRESS: Struct("<"),
     Command.UPLOAD_BEGIN: Struct("<HH"),
     Command.UPLOAD_DATA: Struct("<H"),
     Command.UPLOAD_COMMIT: Struct("<"),
@@ -294,7 +324,7 @@ REQUESTS = {
 #: Response data after the error byte; PART_READ answers bytes alone.
 RESPONSES = {
     Command.HELLO: Struct("<BBBBBHIIIIii8sH"),
-    Command.STATUS: Struct("<BBBBiiHHBBBBBHBHIBB"),
+    Command.STATUS: Struct("<BBBBiiHHBBBBBHBHIBBBBBB"),
     Command.HOME: Struct("<"),
     Command.RUN: Struct("<"),
     Command.HOLD: Struct("<"),
@@ -306,6 +336,7 @@ RESPONSES = {
     Command.JOG: Struct("<"),
     Command.GOTO: Struct("<"),
     Command.TOUCH: Struct("<"),
+    Command.PROGRESS: Struct("<BHBB"),
     Command.UPLOAD_BEGIN: Struct("<"),
     Command.UPLOAD_DATA: Struct("<"),
     Command.UPLOAD_COMMIT: Struct("<BH"),
@@ -370,7 +401,20 @@ class StatusData(NamedTuple):
     bad_frames: int
     uptime_ms: int
     stream_low: int
+    spread_x: int
+    spread_z: int
+    homed_axes: int
+    warnings: int
     inputs: int
+
+
+class ProgressData(NamedTuple):
+    """Response data of PROGRESS."""
+
+    slot: int
+    crc: int
+    operation: int
+    pass_number: int
 
 
 class UploadCommitData(NamedTuple):
@@ -497,7 +541,7 @@ SETTINGS = (
     Setting(SettingId.ZERO_X, -3575, -32000, 0, "steps", "machine X of the spindle axis"),
     Setting(SettingId.ZERO_Z, -8000, -32000, 0, "steps", "machine Z of the part's front face"),
     Setting(SettingId.HOME_RATE, 800, 20, 4000, "step/s", "speed towards the limit switches"),
-    Setting(SettingId.LATCH_RATE, 100, 20, 100, "step/s", "speed of slow approaches and touches"),
+    Setting(SettingId.LATCH_RATE, 50, 20, 100, "step/s", "speed of slow approaches and touches"),
     Setting(SettingId.RAPID_RATE_X, 1000, 20, 32000, "step/s", "rapid speed of X"),
     Setting(SettingId.RAPID_RATE_Z, 1000, 20, 32000, "step/s", "rapid speed of Z"),
     Setting(SettingId.SWITCH_TRAVEL_X, 0, 0, 200, "steps", "slide way, switch X closed to open"),
@@ -507,8 +551,8 @@ SETTINGS = (
     Setting(SettingId.INVERT_X, 0, 0, 1, "", "1 turns motor X the other way"),
     Setting(SettingId.INVERT_Z, 0, 0, 1, "", "1 turns motor Z the other way"),
     Setting(SettingId.DEAD_MAX, 300, 0, 1000, "steps", "most dead steps that homing accepts"),
-    Setting(SettingId.DEAD_X, 0, 0, 1000, "steps", "dead steps of X, last measured"),
-    Setting(SettingId.DEAD_Z, 0, 0, 1000, "steps", "dead steps of Z, last measured"),
+    Setting(SettingId.DEAD_X, -1, -1, 1000, "steps", "dead steps of X, last measured; -1 never"),
+    Setting(SettingId.DEAD_Z, -1, -1, 1000, "steps", "dead steps of Z, last measured; -1 never"),
     Setting(SettingId.HOMING_REPEATS, 3, 1, 9, "", "measurements per axis; the median counts"),
     Setting(SettingId.SPREAD_MAX, 2, 0, 50, "steps", "largest spread of these measurements"),
     Setting(SettingId.ACCELERATION, 8000, 1100, 32000, "step/s2", "acceleration along the path"),
@@ -520,4 +564,8 @@ SETTINGS = (
     Setting(SettingId.SPINDLE_MAX, 3800, 1, 32000, "rev/min", "fastest spindle speed"),
     Setting(SettingId.PROBE_FITTED, 0, 0, 1, "", "1 when the tool-to-work contact sensor is wired"),
     Setting(SettingId.TOUCH_BACK_OFF, 50, 1, 1000, "steps", "way back between two touches"),
+    Setting(SettingId.HOME_PHASE_X, -1, -1, 7, "", "coil phase where switch X opens; -1 none"),
+    Setting(SettingId.HOME_PHASE_Z, -1, -1, 7, "", "coil phase where switch Z opens; -1 none"),
+    Setting(SettingId.DEAD_JUMP, 5, 0, 1000, "steps", "change of the dead steps that is reported"),
+    Setting(SettingId.DRIFT_MAX, 1, 0, 50, "steps", "most that a home position may have moved"),
 )

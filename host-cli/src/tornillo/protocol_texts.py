@@ -6,7 +6,7 @@ Generated from protocol.toml by generate_protocol.py: do not edit.
 
 from typing import NamedTuple
 
-from tornillo.protocol import Alarm, ErrorCode, Refusal
+from tornillo.protocol import Alarm, ErrorCode, MachineWarning, Refusal
 
 
 class Explanation(NamedTuple):
@@ -92,6 +92,10 @@ ERROR_TEXTS = {
             "sensor and `tornillo settings set probe_fitted 1`"
         ),
     ),
+    ErrorCode.NOTHING_TO_RESUME: Explanation(
+        "no part, or not this one, was begun and not finished",
+        "see `tornillo status`; cut a part from its start with `tornillo run PART`",
+    ),
     ErrorCode.WRONG_WAY: Explanation(
         "the limit switch at that end is pressed",
         "jog the other way, or home",
@@ -149,6 +153,20 @@ ALARM_TEXTS = {
         "an arc whose centre does not fit its ends",
         "reset and home again; please report it with the part file",
     ),
+    Alarm.HOME_OPENED_LATE: Explanation(
+        "the limit switch opened, but only after more dead steps than the setting dead_max allows",
+        (
+            "check for a loose nut, screw or coupling, and for a switch that sticks; if the screw "
+            "is like that, raise dead_max, reset, then home again"
+        ),
+    ),
+    Alarm.PHASE_DRIFT: Explanation(
+        (
+            "the limit switch opened at another place than in the last homing: steps were lost, or"
+            " the screw, the coupling or the switch has moved"
+        ),
+        "check all three and the feed, reset, then home again: the new place counts from then on",
+    ),
     Alarm.SWITCH_WIRING: Explanation(
         "a limit switch reads closed far from its end: its wire is broken, or many steps were lost",
         "check the switch, its wire and plug, reset, then home again",
@@ -156,6 +174,23 @@ ALARM_TEXTS = {
     Alarm.PROBE_UNEXPECTED: Explanation(
         "the tool touched the work while it moved fast",
         "look at tool and work, reset, jog away, then home again",
+    ),
+}
+
+WARNING_TEXTS = {
+    MachineWarning.DEAD_X: Explanation(
+        "the dead steps of X are not what the homing before found",
+        (
+            "look for a loose coupling, nut or screw of X; if it is wear, home again: then these "
+            "are the ones to compare with"
+        ),
+    ),
+    MachineWarning.DEAD_Z: Explanation(
+        "the dead steps of Z are not what the homing before found",
+        (
+            "look for a loose coupling, nut or screw of Z; if it is wear, home again: then these "
+            "are the ones to compare with"
+        ),
     ),
 }
 

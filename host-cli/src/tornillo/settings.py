@@ -113,10 +113,4 @@ def outdated_parts(lathe: Lathe, changes: list[Change]) -> list[str]:
     """Names of stored parts that were made for other screws, after a step size was changed."""
     if not any(change.setting.id in STEP_SIZES for change in changes):
         return []
-    now = tuple(lathe.setting(one).value for one in (SettingId.STEP_X_NM, SettingId.STEP_Z_NM))
-    found = []
-    for part in lathe.parts():
-        header = lathe.image(part.slot).header
-        if (header.step_x_nm, header.step_z_nm) != now:
-            found.append(part.name)
-    return found
+    return [part.name for part in lathe.outdated_parts()]

@@ -10,13 +10,15 @@ from tornillo.protocol import (
     SLOT_NONE,
     Alarm,
     Axis,
+    HomedAxis,
+    MachineWarning,
     ResetCause,
     State,
     StatusData,
     StatusFlag,
     StatusInput,
 )
-from tornillo.protocol_texts import ALARM_TEXTS
+from tornillo.protocol_texts import ALARM_TEXTS, WARNING_TEXTS
 
 AXIS_ALARMS = frozenset(
     {
@@ -26,6 +28,8 @@ AXIS_ALARMS = frozenset(
         Alarm.WRONG_SWITCH,
         Alarm.DEAD_STEPS_SPREAD,
         Alarm.STOPPED_HOMING,
+        Alarm.HOME_OPENED_LATE,
+        Alarm.PHASE_DRIFT,
         Alarm.SWITCH_WIRING,
     }
 )
@@ -39,7 +43,8 @@ class Status:
 
     `x`, `z`: tool in machine steps. `dead_x`, `dead_z`: steps. `slot`: the running or selected
     part, None for none. `operation`, `pass_number`: from 1, 0 for none. `permille`: progress
-    of the run, 1000 after a finished one.
+    of the run, 1000 after a finished one. `spread_x`, `spread_z`: how much the counts of the last
+    homing differed, steps.
     """
 
     state: State
@@ -60,6 +65,10 @@ class Status:
     bad_frames: int
     uptime_ms: int
     stream_low: int
+    spread_x: int
+    spread_z: int
+    homed_axes: HomedAxis
+    warnings: MachineWarning
     inputs: StatusInput
 
     @classmethod
@@ -82,6 +91,8 @@ class Status:
         values["alarm"] = alarm
         values["flags"] = StatusFlag(data.flags)
         values["inputs"] = StatusInput(data.inputs & KNOWN_INPUTS)
+        values["homed_axes"] = HomedAxis(data.homed_axes)
+        values["warnings"] = MachineWarning(data.warnings)
         values["slot"] = None if data.slot == SLOT_NONE else data.slot
         return cls(alarm_axis=axis, **values)
 
@@ -113,6 +124,12 @@ class Status:
     def under_way(self) -> bool:
         """Whether a run has begun and not ended: it cuts, is held or pauses."""
         return self.state in (State.RUNNING, State.HOLD, State.PAUSE)
+
+    @property
+    def advice(self) -> list[str]:
+        """The warnings in words, each with what to do about it."""
+        texts = [WARNING_TEXTS[warning] for warning in MachineWarning if warning in self.warnings]
+        return [f"{_(text.cause)}; {_(text.remedy)}" for text in texts]
 
     def alarm_error(self) -> AlarmError:
         """The alarm in words, with what to do about it."""

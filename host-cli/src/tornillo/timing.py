@@ -14,7 +14,9 @@ from tornillo.drives import NO_LIMIT, Drives, LegPlanner, exits, sizes, x_way
 from tornillo.moves import Move, Plan
 from tornillo.protocol import FEED_UNIT
 
-TICK_S = 1e-3
+#: The ramp counts time in 1/1024 s.
+TICKS = 1024
+TICK_S = 1 / TICKS
 REST_S = 10e-3
 BEGIN_S = 1e-3
 #: Entries before the braking point at which the speed is followed again.
@@ -27,9 +29,10 @@ def move_times(chain: Sequence[Move], planner: LegPlanner) -> list[float]:
     legs = list(planner.chain(chain))
     speed = min(float(drives.start), legs[0].rate) if legs else 0.0
     times: list[float] = []
-    for leg, allowed in zip(legs, exits(legs, drives), strict=True):
+    for number, (leg, allowed) in enumerate(zip(legs, exits(legs, drives), strict=True)):
         stretch = leg.length / leg.entries
-        task = Task(drives, round(leg.entries), stretch, leg.dead, leg.rate, allowed)
+        stands = number == 0 or leg.rest
+        task = Task(drives, round(leg.entries), stretch, leg.dead, leg.rate, allowed, stands)
         seconds, speed = task_time(task, speed)
         seconds += leg.flat / leg.rate
         times.append(seconds + (REST_S if leg.rest else 0.0))
@@ -42,7 +45,8 @@ class Task(NamedTuple):
     """`entries` steps of the faster axis at `rate`, after `dead` ones that lead nowhere.
 
     `stretch` is the way along the path of one entry; `allowed` is the braking distance that may
-    be left behind, half steps.
+    be left behind, half steps; `stands` tells that the tool stands before, so that the speed
+    changes with the second step.
     """
 
     drives: Drives
@@ -51,25 +55,36 @@ class Task(NamedTuple):
     dead: int
     rate: float
     allowed: int
+    stands: bool
 
 
 @lru_cache(maxsize=4096)
 def task_time(task: Task, speed: float) -> tuple[float, float]:
     """Seconds of a task begun with `speed`, and the speed at its end."""
-    now, ticked, left = 0.0, 0.0, task.entries + task.dead
+    now, way, left = 0.0, 0.0, task.entries + task.dead
     while left > 0:
-        # The time of an entry is set when the one before it is made.
-        now += (task.stretch if left <= task.entries else 1.0) / speed
-        left -= 1
-        steady = speed == task.rate
-        while ticked + TICK_S <= now:
-            ticked += TICK_S
-            speed = next_speed(task, speed, min(left, task.entries))
-        if steady and speed == task.rate and left <= task.entries:
-            ahead = _steady(task, left)
-            now += ahead * task.stretch / task.rate
-            left -= ahead
-            ticked = max(ticked, now - TICK_S) if ahead else ticked
+        stretch = task.stretch if left <= task.entries else 1.0
+        if speed == task.rate and left <= task.entries:
+            steady = _steady(task, left)
+            now += steady * stretch / speed
+            left -= steady
+            if not left:
+                break
+        # So many entries go by at this speed while the next is worked out: that of a ramp which
+        # changes speed with every tick and has come as far.
+        entries = min(left, int(speed) // TICKS + 1)
+        now += entries * stretch / speed
+        way += entries * stretch * TICKS
+        if task.stands and not left < task.entries + task.dead:
+            way = 0.0
+        following = speed
+        while way >= int(following):
+            way -= int(following)
+            before, following = following, next_speed(task, following, min(left, task.entries))
+            if following == before:
+                way = 0.0
+        left -= entries
+        speed = following
     return now, speed
 
 
@@ -77,14 +92,14 @@ def _steady(task: Task, left: int) -> int:
     """Entries that will certainly be made at the task's rate."""
     if task.rate <= task.drives.start:
         return left
-    braking = task.drives.distance(task.rate) + 2 + int(task.rate) // 256 - task.allowed
+    braking = task.drives.distance(task.rate) + 4 + int(task.rate) // 256 - task.allowed
     return max(0, left - max(0, braking // 2 + MARGIN))
 
 
 def next_speed(task: Task, speed: float, left: int) -> float:
-    """The speed a millisecond later, with `left` entries to go."""
+    """The speed a tick later, with `left` entries to go when the speed before began."""
     drives, rate = task.drives, task.rate
-    limit = min(NO_LIMIT, max(0, 2 * left - 2 - int(speed) // 256) + task.allowed)
+    limit = min(NO_LIMIT, max(0, 2 * left - 4 - int(speed) // 256) + task.allowed)
     change = drives.acceleration * TICK_S
     least = min(drives.start, rate)
     if speed > drives.start and drives.distance(speed) > limit:

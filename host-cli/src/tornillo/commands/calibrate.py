@@ -314,7 +314,8 @@ def known_from(machine: str, axis: Axis) -> Known:
             ),
             _("write a whole file with `tornillo settings save FILE`"),
         )
-    return Known(axis, values[step], values[dead], values[travel])
+    # -1: never measured, so none are taken up.
+    return Known(axis, values[step], max(0, values[dead]), values[travel])
 
 
 def _settings_of(axis: Axis) -> tuple[SettingId, SettingId, SettingId]:

@@ -61,8 +61,8 @@ def drives_of(lathe: Lathe) -> Drives:
         start_x=value(SettingId.START_RATE_X),
         start_z=value(SettingId.START_RATE_Z),
         acceleration=value(SettingId.ACCELERATION),
-        dead_x=value(SettingId.DEAD_X),
-        dead_z=value(SettingId.DEAD_Z),
+        dead_x=max(0, value(SettingId.DEAD_X)),
+        dead_z=max(0, value(SettingId.DEAD_Z)),
     )
 
 

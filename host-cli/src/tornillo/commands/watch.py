@@ -89,7 +89,7 @@ def _print_lines(lathe: Lathe, every: float) -> None:
 
     names = {part.slot: part.name for part in lathe.parts()}
     while True:
-        click.echo(json.dumps(status_json(lathe, lathe.status(), names)))
+        click.echo(json.dumps(status_json(lathe, lathe.status(), lathe.progress(), names)))
         time.sleep(every)
 
 

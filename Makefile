@@ -59,14 +59,22 @@ bench: firmware virtual-lathe-library ## measure, write build/bench/bench.json a
 	@$(PYTHON) tests/bench/bench.py
 
 .PHONY: docs
-docs: | $(SETUP_STAMP) ## refresh the generated parts of docs/
+docs: firmware virtual-lathe-library ## refresh what is generated in docs/, build build/site
 	@$(PYTHON) firmware/link/generate_protocol.py
 	@$(PYTHON) docs/generate_tables.py
-	@$(VENV)/bin/tornillo draw host-cli/examples/test-bar.toml -o docs/images/test-bar.png
-	@for part in pockets disc; do \
-	  $(VENV)/bin/tornillo draw docs/parts/$$part.toml -o docs/images/$$part.png; done
-	@$(VENV)/bin/tornillo import-dxf host-cli/examples/pawn.dxf -o build/pawn.toml --force \
-	  --back-clearance 52 --picture docs/images/pawn-import.png
+	@$(PYTHON) docs/generate_reference.py
+	@$(PYTHON) docs/generate_pictures.py
+	@$(PYTHON) -m mkdocs --quiet build --strict
+	@echo "build/site/index.html"
+
+.PHONY: catalogues
+catalogues: | $(SETUP_STAMP) ## collect all messages, list those without a translation, compile
+	@$(PYTHON) host-cli/make_catalogues.py
+
+.PHONY: wheel
+wheel: | $(SETUP_STAMP) ## build the package for pip and pipx into build/wheel
+	@$(PYTHON) -m pip wheel --quiet --no-deps --no-build-isolation -w build/wheel ./host-cli
+	@ls build/wheel/*.whl
 
 .PHONY: clean
 clean: ## remove build/ and the Python environment; the compiler cache stays

@@ -16,8 +16,8 @@
 
 uint8_t manual_contact;
 
-static uint8_t moved_by; /* command */
 static uint16_t heard_at;
+static uint16_t patience; /* ms, 0 for ever */
 
 void manual_heard(void)
 {
@@ -61,7 +61,8 @@ static void begin_moving(void)
     machine_state = STATE_MOVING;
 }
 
-uint8_t manual_begin(uint8_t command, int16_t x, int16_t z, uint16_t rate)
+uint8_t manual_begin(uint8_t command, int16_t x, int16_t z, uint16_t rate,
+                     uint16_t wait)
 {
     uint8_t error = machine_not_ready();
 
@@ -71,7 +72,6 @@ uint8_t manual_begin(uint8_t command, int16_t x, int16_t z, uint16_t rate)
     stroke_dx = x - stream_position(AXIS_X);
     stroke_dz = z - stream_position(AXIS_Z);
     stroke_rate = rate != 0 ? rate : 0xFFFF;
-    moved_by = command;
     if (machine_homed) {
         if (!inside(x, settings[SETTING_TRAVEL_X]) ||
             !inside(z, settings[SETTING_TRAVEL_Z])) {
@@ -90,6 +90,10 @@ uint8_t manual_begin(uint8_t command, int16_t x, int16_t z, uint16_t rate)
         error = begin_touch();
     }
     if (error == ERROR_OK) {
+        patience = wait;
+        if (command != COMMAND_JOG) {
+            patience = command == COMMAND_TOUCH ? DEADMAN_MS : 0;
+        }
         stroke_begin();
     }
     return error;
@@ -107,8 +111,7 @@ uint8_t manual_poll(void)
         if (ramp_held() || !(stream_flags & STREAM_ACTIVE)) {
             path_cancel();
         }
-    } else if (moved_by != COMMAND_GOTO &&
-               tick_now() - heard_at >= DEADMAN_MS) {
+    } else if (patience != 0 && tick_now() - heard_at >= patience) {
         ramp_hold();
     }
     /* The flags are read last: a stop may come at any moment. */

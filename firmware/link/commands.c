@@ -342,7 +342,8 @@ uint8_t commands_execute(void)
     case COMMAND_GOTO:
     case COMMAND_TOUCH:
         error = manual_begin(frame_code, get_i16(JOG_X_AT), get_i16(JOG_Z_AT),
-                             get_u16(JOG_RATE_AT));
+                             get_u16(JOG_RATE_AT),
+                             get_u16(JOG_PATIENCE_AT));
         break;
     case COMMAND_HOME:
         error = machine_home(frame_payload[HOME_AXES_AT]);

@@ -5,8 +5,8 @@
     python3 firmware/link/generate_protocol.py           write the files
     python3 firmware/link/generate_protocol.py --check   exit 1 when one is stale
 
-Written are `protocol.h` for the firmware, `protocol.py` and `protocol_texts.py` for the
-host, and the tables between the markers of `docs/protocol.md`. Only the standard library is
+Written are `protocol.h` for the firmware, `protocol.py`, `protocol_texts.py` and `version.py`
+for the host, and the tables between the markers of `docs/protocol.md`. Only the standard library is
 needed, so that the firmware builds without a virtual environment.
 """
 
@@ -16,7 +16,7 @@ from pathlib import Path
 from protocol_c import header
 from protocol_model import load
 from protocol_pages import fill
-from protocol_python import numbers_module, texts_module
+from protocol_python import numbers_module, texts_module, version_module
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -31,6 +31,7 @@ def derived() -> dict[Path, str]:
         HERE / "protocol.h": header(model),
         HOST / "protocol.py": numbers_module(model),
         HOST / "protocol_texts.py": texts_module(model),
+        HOST / "version.py": version_module(model),
         PAGE: fill(model, PAGE.read_text(encoding="utf-8")),
     }
 

@@ -256,16 +256,17 @@
 #define OVERRIDE_PERCENT_AT                 0
 /* Move to a place, homed or not, one axis after the other as GOTO does. It
  * brakes to a stop as HOLD does, and is over, when no request of any kind
- * comes for 500 ms. Not homed: x and z count from wherever the tool was
+ * comes for `patience`. Not homed: x and z count from wherever the tool was
  * when the chip started, there are no soft limits, and it moves at
  * home_rate at most. OUT_OF_RANGE: homed, and not inside the travel.
  * WRONG_WAY: towards a limit switch that is pressed. */
 #define COMMAND_JOG                         0x0B
-#define JOG_REQUEST_SIZE                    10
+#define JOG_REQUEST_SIZE                    12
 #define JOG_RESPONSE_SIZE                   1
 #define JOG_X_AT                            0
 #define JOG_Z_AT                            4
 #define JOG_RATE_AT                         8
+#define JOG_PATIENCE_AT                     10
 /* Move to a place: X first when it moves away from the spindle's axis, else
  * Z first. OUT_OF_RANGE: not inside the travel. */
 #define COMMAND_GOTO                        0x0C

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Write the host's protocol.py (numbers and layouts) and protocol_texts.py (sentences)."""
+"""Write the host's protocol.py (numbers, layouts), protocol_texts.py (sentences), version.py."""
 
 import textwrap
 
@@ -47,6 +47,12 @@ def quoted(text: str, indent: int) -> str:
     pad = " " * (indent + 4)
     words = textwrap.wrap(text, WIDTH - indent - 7, drop_whitespace=False)
     return "(\n" + "\n".join(f'{pad}"{line}"' for line in words) + "\n" + " " * indent + ")"
+
+
+def version_module(model: Model) -> str:
+    """The module that tells the version without anything else to import."""
+    lines = head("The version of this package and of the firmware that belongs to it.", [])
+    return "\n".join([*lines, f'__version__ = "{model.raw["firmware"]["version"]}"', ""])
 
 
 def constants(model: Model) -> list[str]:

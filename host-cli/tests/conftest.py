@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the tests of the host share: a scripted lathe, the command line, part texts."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ from console import Tornillo
 from hypothesis import settings
 from scripted_chip import ScriptedChip, ScriptedPort
 
+from tornillo import language
 from tornillo.cli import main
 from tornillo.lathe import Lathe
 from tornillo.machine import Machine
@@ -18,6 +20,16 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 
 settings.register_profile("tornillo", deadline=None)
 settings.load_profile("tornillo")
+
+
+@pytest.fixture(autouse=True)
+def _english(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Whoever runs the tests, the program speaks English unless a test asks for more."""
+    monkeypatch.setenv("LANGUAGE", "en")
+    monkeypatch.setenv("TORNILLO_LANG", "en")
+    language.use("en")
+    yield
+    language.use("en")
 
 
 @pytest.fixture

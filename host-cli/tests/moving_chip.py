@@ -48,7 +48,7 @@ class MovingChip(ScriptedChip):
 
     def do_jog(self, payload: bytes) -> bytes:
         """JOG."""
-        x, z, self.rate = REQUESTS[Command.JOG].unpack(payload)
+        x, z, self.rate, _patience = REQUESTS[Command.JOG].unpack(payload)
         return self.go(Command.JOG, (x, z))
 
     def do_goto(self, payload: bytes) -> bytes:

@@ -94,7 +94,8 @@ def test_ctrl_c_while_homing_stops_the_slides(tornillo: Tornillo, chip: Scripted
     result = tornillo("home")
     assert result.exit_code == 1
     assert "homing was stopped" in result.stderr
-    assert chip.executed[-1] is Command.STOP
+    assert Command.STOP in chip.executed
+    assert chip.status.state == State.IDLE
 
 
 def test_run_starts_the_part_of_that_name(tornillo: Tornillo, loaded: ScriptedChip) -> None:
@@ -387,7 +388,7 @@ def test_every_verb_passes_a_refusal_on_with_its_remedy(
 
 
 def test_the_bar_is_shown_only_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    from tornillo.commands.following import on_terminal
+    from tornillo.commands.progress import on_terminal
 
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     assert on_terminal()

@@ -38,7 +38,7 @@ def checkout(tmp_path: Path) -> Path:
         (tmp_path / name).mkdir(parents=True)
     for path in LINK.glob("*protocol*"):
         shutil.copy(path, tmp_path / "firmware" / "link")
-    for name in ("protocol.py", "protocol_texts.py"):
+    for name in ("protocol.py", "protocol_texts.py", "version.py"):
         folder = Path("host-cli/src/tornillo")
         shutil.copy(ROOT / folder / name, tmp_path / folder)
     shutil.copy(ROOT / "docs" / "protocol.md", tmp_path / "docs")
@@ -56,6 +56,7 @@ def test_the_committed_files_are_up_to_date() -> None:
         "firmware/link/protocol.h",
         "host-cli/src/tornillo/protocol.py",
         "host-cli/src/tornillo/protocol_texts.py",
+        "host-cli/src/tornillo/version.py",
         "docs/protocol.md",
     ],
 )
@@ -64,6 +65,7 @@ def test_a_stale_file_is_found_and_written_anew(checkout: Path, name: str) -> No
     text = source.read_text(encoding="utf-8")
     text = text.replace("part_slots = { value = 12", "part_slots = { value = 9")
     text = text.replace("the lathe is moving", "the lathe moves")
+    text = text.replace('version = "0.1.0"', 'version = "0.1.1"')
     source.write_text(text, encoding="utf-8")
     stale = generate(checkout, "--check")
     assert stale.returncode == 1

@@ -8,6 +8,7 @@ from motion_page import motion_rows
 from safety_page import safety_rows
 from shape_page import shape_rows
 from stop_figures import stop_rows
+from tornillo import __version__
 
 MARKER = re.compile(r"(<!-- bench -->\n).*?(<!-- end -->)", re.DOTALL)
 CYCLES_PER_US = 12
@@ -91,7 +92,7 @@ def fill(page: str, found: Figures) -> str:
     lines = [
         f"Measured on {found['date']}; {found['computer']}.",
         "",
-        "| what | Tornillo 0.1.0 | grbl 1.1h |",
+        f"| what | Tornillo {__version__} | grbl 1.1h |",
         "|---|---|---|",
         *(f"| {what} | {ours} | {peers} |" for what, ours, peers in rows(found)),
     ]

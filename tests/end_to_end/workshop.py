@@ -81,6 +81,11 @@ class Workshop:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        """Switch off and read the report, unless that was done before."""
+        if not self.report:
+            self.switch_off()
+
+    def switch_off(self) -> None:
         """Switch off and read the report."""
         if self._lathe.poll() is None:
             self._lathe.terminate()
@@ -107,7 +112,8 @@ class Workshop:
             text=True,
             timeout=STUCK_S,
             check=False,
-            env=os.environ | {"COLUMNS": "200", "NO_COLOR": "1", "TERM": "dumb"},
+            env=os.environ
+            | {"COLUMNS": "200", "NO_COLOR": "1", "TERM": "dumb", "TORNILLO_LANG": "en"},
         )
 
     def must(self, *arguments: str | Path) -> str:

@@ -13,8 +13,9 @@ from simulated.bench import Bench
 from simulated.processes import on_a_new_chip
 from simulated.standing import COILS, assert_nothing_moves, entries
 from simulated.watching import Watch
+from tornillo.jogging import SILENCE_MS, STOPPED_WITHIN_S, fastest
 from tornillo.link import Link
-from tornillo.protocol import REQUESTS, Axis, Command, ErrorCode, State
+from tornillo.protocol import REQUESTS, Axis, Command, ErrorCode, SettingId, State
 from virtual_lathe.chip import CYCLES_PER_SECOND
 
 HOME_RATE = 800
@@ -186,6 +187,27 @@ def test_a_jog_brakes_half_a_second_after_the_host_was_heard_last() -> None:
     assert bench.homed
     assert bench.position[1] == bench.axis(Axis.Z).slide
     assert_nothing_moves(bench)
+
+
+@pytest.mark.parametrize("rate", [200, 1000])
+@on_a_new_chip
+def test_a_jog_by_keys_stands_200_ms_after_the_link_was_lost(rate: int) -> None:
+    bench = homed(backlash_z=12)
+    start = bench.host.setting(SettingId.START_RATE_Z).value
+    acceleration = bench.host.setting(SettingId.ACCELERATION).value
+    assert rate <= fastest(start, acceleration)
+    bench.host.jog(Axis.Z, -5000, rate, SILENCE_MS)
+    bench.run(0.5 * SILENCE_MS / 1000)
+    bench.status()
+    heard = bench.chip.seconds
+    bench.unplug()
+    bench.chip.log_pins(*COILS)
+    bench.wait_for(State.IDLE, STOPPED_WITHIN_S)
+    assert bench.chip.seconds - heard < STOPPED_WITHIN_S
+    last = entries(bench.chip.pin_changes())[-1] / CYCLES_PER_SECOND
+    assert SILENCE_MS / 1000 - 0.01 < last - heard < STOPPED_WITHIN_S
+    assert bench.homed
+    assert bench.position[1] == bench.axis(Axis.Z).slide
 
 
 @on_a_new_chip

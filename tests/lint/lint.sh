@@ -143,12 +143,16 @@ step "ruff check" "$venv/bin/ruff" check --quiet .
 step "ruff format" "$venv/bin/ruff" format --quiet --diff .
 step "mypy host-cli" in_host_cli "$venv/bin/mypy"
 step "mypy firmware and tests" "$venv/bin/mypy" firmware/toolchain firmware/link \
-    docs tests
+    docs tests host-cli/make_catalogues.py
 step "mypy hw" "$venv/bin/mypy" --config-file hw/mypy.ini hw
 step "protocol files up to date" "$venv/bin/python" \
     firmware/link/generate_protocol.py --check
 step "documentation tables up to date" "$venv/bin/python" \
     docs/generate_tables.py --check
+step "documentation reference up to date" "$venv/bin/python" \
+    docs/generate_reference.py --check
+step "catalogues of messages up to date" "$venv/bin/python" \
+    host-cli/make_catalogues.py --check
 step "bash -n" shell_syntax "${shell[@]}"
 step "shellcheck" shellcheck --severity=warning "${shell[@]}"
 step "licence lines" licensed "${firmware_c[@]}" "${native[@]}" "${assembly[@]}" \

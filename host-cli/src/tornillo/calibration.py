@@ -20,6 +20,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.protocol import Axis, SettingId
 from tornillo.setting_names import BY_ID
 
@@ -111,7 +112,7 @@ def from_ways(ways: Sequence[Ways], programme: Programme, known: Known) -> Calib
     Raises TornilloError when there is none, or when they contradict what homing counted.
     """
     if not ways:
-        raise TornilloError("no measurement was given", "measure at least one specimen")
+        raise TornilloError(_("no measurement was given"), _("measure at least one specimen"))
     _must_be_ways(ways, programme)
     steps = Figure.of([pair.first * NM_PER_UM / programme.forward for pair in ways])
     lengths = [
@@ -130,7 +131,7 @@ def from_steps(
     Raises TornilloError when there is none, or when they contradict what homing counted.
     """
     if not backlash:
-        raise TornilloError("no measurement was made", "ask for at least one round")
+        raise TornilloError(_("no measurement was made"), _("ask for at least one round"))
     steps = Figure.of(steps_nm) if steps_nm else None
     step_um = (steps.mean if steps else known.step_nm) / NM_PER_UM
     return _recommend(
@@ -141,13 +142,15 @@ def from_steps(
 def _must_be_ways(ways: Sequence[Ways], programme: Programme) -> None:
     """Refuse what cannot have been measured."""
     if programme.forward < 1 or programme.back < 1:
-        raise TornilloError("a way of no steps tells nothing", "give at least one step")
+        raise TornilloError(_("a way of no steps tells nothing"), _("give at least one step"))
     for number, pair in enumerate(ways, start=1):
         good = all(math.isfinite(one) and one > 0 for one in (pair.first, pair.second))
         if not good:
             raise TornilloError(
-                f"measurement {number}: {pair.first:g} and {pair.second:g} are no two lengths",
-                "give two numbers above 0: mark 1 to 2, and mark 2 to 3",
+                _("measurement {number}: {first:g} and {second:g} are no two lengths").format(
+                    number=number, first=pair.first, second=pair.second
+                ),
+                _("give two numbers above 0: mark 1 to 2, and mark 2 to 3"),
             )
 
 
@@ -181,18 +184,23 @@ def _switch_travel(known: Known, backlash: Figure) -> int | None:
         return None
     if known.dead == 0:
         raise TornilloError(
-            f"homing found no dead steps besides {known.switch_travel} steps of switch travel, "
-            "so what it counted is not known",
-            f"`tornillo settings set {_TRAVEL[known.axis].name.lower()} 0`, home, "
-            "and calibrate again",
+            _(
+                "homing found no dead steps besides {switch_travel} steps of switch "
+                "travel, so what it counted is not known"
+            ).format(switch_travel=known.switch_travel),
+            _("`tornillo settings set {travel} 0`, home, and calibrate again").format(
+                travel=_TRAVEL[known.axis].name.lower()
+            ),
         )
     travel = counted - round(backlash.mean)
     doubt = 0.0 if math.isnan(backlash.mean_within) else backlash.mean_within
     if travel < 0 and -travel > max(1.0, doubt):
         raise TornilloError(
-            f"{backlash.mean:.1f} steps of backlash were measured, but from its switch closing to "
-            f"opening homing counted {counted} steps in all",
-            "check the readings and their order, and that nothing is loose; home again",
+            _(
+                "{mean:.1f} steps of backlash were measured, but from its switch closing "
+                "to opening homing counted {counted} steps in all"
+            ).format(mean=backlash.mean, counted=counted),
+            _("check the readings and their order, and that nothing is loose; home again"),
         )
     return max(travel, 0)
 
@@ -202,8 +210,16 @@ def _fitting(setting: SettingId, value: int) -> int:
     entry = BY_ID[setting]
     if not entry.minimum <= value <= entry.maximum:
         raise TornilloError(
-            f"{setting.name.lower()} would have to be {value} {entry.unit}, but goes from "
-            f"{entry.minimum} to {entry.maximum} {entry.unit}",
-            "check the units and the order of the readings",
+            _(
+                "{setting} would have to be {value} {unit}, but goes from {minimum} to "
+                "{maximum} {unit}"
+            ).format(
+                setting=setting.name.lower(),
+                value=value,
+                unit=entry.unit,
+                minimum=entry.minimum,
+                maximum=entry.maximum,
+            ),
+            _("check the units and the order of the readings"),
         )
     return value

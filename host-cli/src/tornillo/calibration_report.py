@@ -4,6 +4,7 @@
 import math
 
 from tornillo.calibration import Calibration, Figure
+from tornillo.language import _
 from tornillo.protocol import Axis
 from tornillo.setting_names import BY_ID, amount, span
 
@@ -13,27 +14,41 @@ DIGITS = 6
 
 def report(found: Calibration) -> list[str]:
     """Lines for a person: figures, then what is recommended."""
-    lines = [f"axis {found.known.axis.name}, {found.backlash.count} measurements"]
+    lines = [
+        _("axis {axis}, {count} measurements").format(
+            axis=found.known.axis.name, count=found.backlash.count
+        )
+    ]
     if found.step_nm is not None:
-        lines.append(f"step size   {_figure(found.step_nm, 'nm', 1)}; set is {found.known.step_nm}")
+        lines.append(
+            _("step size   {step_nm}; set is {step_nm2}").format(
+                step_nm=_figure(found.step_nm, "nm", 1), step_nm2=found.known.step_nm
+            )
+        )
     lines += [
-        f"backlash    {_figure(found.backlash_um, 'um', 2)}",
-        f"            {_figure(found.backlash, 'steps', 1)}; the lathe takes up {found.known.dead}",
+        _("backlash    {backlash_um}").format(backlash_um=_figure(found.backlash_um, "um", 2)),
+        _("            {backlash}; the lathe takes up {dead}").format(
+            backlash=_figure(found.backlash, "steps", 1), dead=found.known.dead
+        ),
     ]
     if found.switch_travel is not None:
         travel, now = found.switch_travel, found.known.switch_travel
-        lines.append(f"switch      {travel} steps of travel; set is {now}")
+        lines.append(
+            _("switch      {travel} steps of travel; set is {now}").format(travel=travel, now=now)
+        )
     return [*lines, *_recommendation(found)]
 
 
 def _figure(figure: Figure, unit: str, decimals: int) -> str:
     """Mean and three sigma, of one value and of the mean."""
-    text = f"mean {figure.mean:.{decimals}f} {unit}"
+    mean = f"{figure.mean:.{decimals}f} {unit}"
+    text = _("mean {mean}").format(mean=mean)
     if math.isnan(figure.sigma):
-        return f"{text} (one measurement: no deviation known)"
-    return (
-        f"{text}, 3 sigma {figure.three_sigma:.{decimals}f} {unit}, "
-        f"of the mean {figure.mean_within:.{decimals}f}"
+        return _("{text} (one measurement: no deviation known)").format(text=text)
+    return _("{text}, 3 sigma {one}, of the mean {all}").format(
+        text=text,
+        one=f"{figure.three_sigma:.{decimals}f} {unit}",
+        all=f"{figure.mean_within:.{decimals}f}",
     )
 
 
@@ -43,13 +58,17 @@ def _recommendation(found: Calibration) -> list[str]:
     for setting, value in found.values.items():
         entry = BY_ID[setting]
         name = setting.name.lower()
-        lines.append(f"recommended {name} {amount(entry, value)} ({span(entry)})")
+        lines.append(
+            _("recommended {name} {entry} ({entry2})").format(
+                name=name, entry=amount(entry, value), entry2=span(entry)
+            )
+        )
     if found.switch_travel is None:
         lines.append(
-            "the travel of the switch is not known: it takes the dead steps that homing found"
+            _("the travel of the switch is not known: it takes the dead steps that homing found")
         )
     elif not found.values:
-        lines.append("recommended nothing: the settings are right")
+        lines.append(_("recommended nothing: the settings are right"))
     return lines
 
 

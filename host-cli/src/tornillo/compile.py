@@ -7,6 +7,7 @@ from typing import NamedTuple
 from tornillo.finished import FinishedPart
 from tornillo.grid import Grid, path_segments
 from tornillo.image import FLAG_INCH, PartImage, Record, Segment, pack_segments
+from tornillo.language import _
 from tornillo.material import Chain, chain_of
 from tornillo.operations import Contour, Operation, Pause, Plunge
 from tornillo.protocol import (
@@ -141,8 +142,8 @@ class _Compiler:
         (z, x), segments = path_segments(path, self.grid, exact=self.tip)
         if not segments:
             text = REFUSAL_TEXTS[Refusal.EMPTY_CUT]
-            message = f"{text.cause}: it is shorter than a step"
-            return None, [fault(operation, 0, message, text.remedy)], []
+            message = _("{cause}: it is shorter than a step").format(cause=_(text.cause))
+            return None, [fault(operation, 0, message, _(text.remedy))], []
         return Cutting(z, x, segments), [], notes
 
     def _least_x(self, operation: Operation) -> float:
@@ -158,8 +159,10 @@ class _Compiler:
         for element in operation.shape.elements:
             for at in (element.start, element.end):
                 if max(map(abs, self.grid.rounded(at))) > POSITION_MAX:
-                    message = f"{text.cause}: z = {at.z:g}, diameter {2 * at.x:g}"
-                    return [fault(operation, element.place, message, text.remedy)]
+                    message = _("{cause}: z = {z:g}, diameter {x:g}").format(
+                        cause=_(text.cause), z=at.z, x=2 * at.x
+                    )
+                    return [fault(operation, element.place, message, _(text.remedy))]
         return []
 
     def run(self) -> Compiled:
@@ -284,11 +287,11 @@ class _Compiler:
             return
         where = ("operation", operation.position, "roughing")
         if not never_falls(chain):
-            message = "a contour that falls cannot be roughed in facing direction"
+            message = _("a contour that falls cannot be roughed in facing direction")
         elif not self.free_fronts[operation.position]:
-            message = "in facing direction the tool would cut what is in front of the contour"
+            message = _("in facing direction the tool would cut what is in front of the contour")
         else:
             return
         self.faults.append(
-            Fault(where, f"{operation.title}: {message}", 'write roughing = "along"')
+            Fault(where, f"{operation.title}: {message}", _('write roughing = "along"'))
         )

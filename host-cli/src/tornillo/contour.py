@@ -11,6 +11,8 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from tornillo.language import _
+
 #: Lengths of file units below which two places are the same.
 SAME = 1e-9
 
@@ -209,7 +211,9 @@ def arc_by_radius(start: Point, end: Point, radius: float) -> Arc:
     half = distance(start, end) / 2
     size = abs(radius)
     if size < half * (1 - SAME):
-        raise ValueError(f"the radius is less than half the distance of the ends, {half:.6g}")
+        raise ValueError(
+            _("the radius is less than half the distance of the ends, {half:.6g}").format(half=half)
+        )
     normal = end.minus(start).unit.normal
     rise = math.sqrt(max(0.0, size * size - half * half))
     middle = Point((start.z + end.z) / 2, (start.x + end.x) / 2)
@@ -232,7 +236,7 @@ def arc_by_third(start: Point, end: Point, via: Point) -> Arc:
     a, b = via.minus(start), end.minus(start)
     twice = 2 * a.cross(b)
     if abs(twice) < SAME * max(1.0, b.length):
-        raise ValueError("the three points lie on a line")
+        raise ValueError(_("the three points lie on a line"))
     z = (b.x * a.dot(a) - a.x * b.dot(b)) / twice
     x = (a.z * b.dot(b) - b.z * a.dot(a)) / twice
     return Arc(start, end, Point(start.z + z, start.x + x), convex=twice > 0)

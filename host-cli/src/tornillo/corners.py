@@ -5,6 +5,7 @@ import math
 from dataclasses import replace
 
 from tornillo.contour import SAME, Arc, Element, Line, Point, distance, intersections, turn
+from tornillo.language import _
 
 SMOOTH = 1e-6  # radians
 
@@ -16,7 +17,7 @@ def rounded(before: Element, after: Element, radius: float) -> list[Element]:
     """
     angle = turn(before, after)
     if abs(angle) < SMOOTH:
-        raise ValueError("there is no corner to round here")
+        raise ValueError(_("there is no corner to round here"))
     by = math.copysign(radius, angle)
     corner = before.end
     fits: list[tuple[float, Point, Point, Point]] = []
@@ -27,8 +28,12 @@ def rounded(before: Element, after: Element, radius: float) -> list[Element]:
         if on_first and on_second:
             fits.append((distance(centre, corner), centre, first, second))
     if not fits:
-        raise ValueError(f"an arc of radius {radius:g} does not fit between its neighbours")
-    _, centre, first, second = min(fits)
+        raise ValueError(
+            _("an arc of radius {radius:g} does not fit between its neighbours").format(
+                radius=radius
+            )
+        )
+    _distance, centre, first, second = min(fits)
     arc = Arc(first, second, centre, convex=angle < 0, place=before.place)
     return [before.between(before.start, first), arc, after.between(second, after.end)]
 
@@ -39,11 +44,13 @@ def chamfered(before: Element, after: Element, length: float) -> list[Element]:
     Raises ValueError when there is no corner, or a piece is too short.
     """
     if abs(turn(before, after)) < SMOOTH:
-        raise ValueError("there is no corner to chamfer here")
+        raise ValueError(_("there is no corner to chamfer here"))
     first = _at_distance(before, before.end, length)
     second = _at_distance(after, after.start, length)
     if first is None or second is None:
-        raise ValueError(f"a chamfer of {length:g} is longer than its neighbours")
+        raise ValueError(
+            _("a chamfer of {length:g} is longer than its neighbours").format(length=length)
+        )
     line = Line(first, second, before.place)
     return [before.between(before.start, first), line, after.between(second, after.end)]
 

@@ -10,6 +10,7 @@ from tornillo.contour import Arc, Element, Line, Point, distance, turn
 from tornillo.dimensioning import Dimensions
 from tornillo.drives import Drives
 from tornillo.image import CENTRE_UNIT, SegmentKind
+from tornillo.language import later
 from tornillo.machine import Machine
 from tornillo.moves import Move, Pass, Role
 from tornillo.outline import outline
@@ -47,12 +48,12 @@ PENS = {
     Role.SPRING: FINISHING,
 }
 LEGEND = (
-    Legend("roughing pass", ROUGHING),
-    Legend("along the contour", SMOOTHING),
-    Legend("finishing pass", FINISHING),
-    Legend("rapid", RAPID),
-    Legend("raw stock", STOCK_EDGE),
-    Legend("finished part", fill=PART_FILL),
+    Legend(later("roughing pass"), ROUGHING),
+    Legend(later("along the contour"), SMOOTHING),
+    Legend(later("finishing pass"), FINISHING),
+    Legend(later("rapid"), RAPID),
+    Legend(later("raw stock"), STOCK_EDGE),
+    Legend(later("finished part"), fill=PART_FILL),
 )
 
 

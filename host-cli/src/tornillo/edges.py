@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tornillo.contour import Arc, Element, Point
+from tornillo.language import _
 from tornillo.tools import Tool
 
 SLACK = 1e-4  # degrees
@@ -38,7 +39,7 @@ def remedy(steep: Steep, tool: Tool) -> str:
     """What tool would do."""
     trailing = steep.falls == (tool.hand != "left")
     if trailing:
-        need = f"back_clearance of {steep.angle:.1f} degrees"
+        need = _("back_clearance of {angle:.1f} degrees").format(angle=steep.angle)
     else:
-        need = f"front_clearance of {steep.angle - 90:.1f} degrees"
-    return f"make it less steep, or use a tool with a {need} or more"
+        need = _("front_clearance of {angle:.1f} degrees").format(angle=steep.angle - 90)
+    return _("make it less steep, or use a tool with a {need} or more").format(need=need)

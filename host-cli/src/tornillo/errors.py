@@ -4,6 +4,7 @@
 `TornilloError` is the root; `str()` gives the message, `remedy` what a person tries next.
 """
 
+from tornillo.language import _
 from tornillo.protocol import Command, ErrorCode, Refusal
 from tornillo.protocol_texts import ERROR_TEXTS, REFUSAL_TEXTS
 
@@ -77,13 +78,22 @@ class ChipError(TornilloError):
         note: str = "",
     ) -> None:
         """Say in words what the codes mean."""
-        message, remedy = ERROR_TEXTS[code]
+        message, remedy = map(_, ERROR_TEXTS[code])
         if reason is not None:
-            place = f"operation {operation}" if operation else "the part as a whole"
+            place = (
+                _("operation {operation}").format(operation=operation)
+                if operation
+                else _("the part as a whole")
+            )
             explained = REFUSAL_TEXTS[reason]
-            message = f"{message}: {place}: {explained.cause}"
-            remedy = explained.remedy
-        super().__init__(f"{command.name} was refused: {message}{note}", remedy)
+            message = f"{message}: {place}: {_(explained.cause)}"
+            remedy = _(explained.remedy)
+        super().__init__(
+            _("{command} was refused: {message}{note}").format(
+                command=command.name, message=message, note=note
+            ),
+            remedy,
+        )
         self.command = command
         self.code = code
         self.reason = reason

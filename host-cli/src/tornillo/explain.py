@@ -3,6 +3,7 @@
 
 from tornillo.compile import Compiled, Origin
 from tornillo.errors import PartError
+from tornillo.language import _
 from tornillo.operations import Contour, Operation
 from tornillo.protocol import Refusal
 from tornillo.protocol_texts import REFUSAL_TEXTS
@@ -14,7 +15,7 @@ from tornillo.toml_source import Source
 def explain(violation: Violation, compiled: Compiled, source: Source) -> PartError:
     """The refusal for a broken rule."""
     text = REFUSAL_TEXTS[violation.refusal]
-    remedy = text.remedy
+    remedy = _(text.remedy)
     what = ""
     place: Place = tuple(violation.key.split("."))
     if violation.record >= 0:
@@ -24,7 +25,7 @@ def explain(violation: Violation, compiled: Compiled, source: Source) -> PartErr
         if violation.refusal is Refusal.EMPTY_CUT and violation.key == "end.z":
             remedy = _empty_cut_remedy(origin.operation)
     detail = f": {violation.detail}" if violation.detail else ""
-    return source.error(place, f"{what}{text.cause}{detail}", remedy)
+    return source.error(place, f"{what}{_(text.cause)}{detail}", remedy)
 
 
 def _place(violation: Violation, origin: Origin, source: Source) -> Place:
@@ -52,7 +53,7 @@ def _key(operation: Operation, end: str, axis: str) -> str:
 def _empty_cut_remedy(operation: Operation) -> str:
     """What to do about an operation that has nothing to cut along z."""
     if operation.type == "face":
-        return "give the raw material in front of the face as `allowance` in [stock]"
+        return _("give the raw material in front of the face as `allowance` in [stock]")
     if operation.type == "groove":
-        return "make the groove wider, or use a narrower tool"
-    return "order z from the free end towards the chuck; towards the chuck z gets smaller"
+        return _("make the groove wider, or use a narrower tool")
+    return _("order z from the free end towards the chuck; towards the chuck z gets smaller")

@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+from tornillo.language import _
+
 PROCESSES = Path("/proc")
 MODEM_MANAGER = "ModemManager"
 LSOF_S = 3.0
@@ -27,7 +29,7 @@ class Holder(NamedTuple):
 
     def __str__(self) -> str:
         """Both, for a person."""
-        return f"{self.name} (process {self.process})"
+        return _("{name} (process {process})").format(name=self.name, process=self.process)
 
 
 def holders(port: str) -> list[Holder]:
@@ -54,7 +56,7 @@ def _name(process: int) -> str:
     try:
         return (PROCESSES / str(process) / "comm").read_text(encoding="utf-8").strip()
     except OSError:
-        return "unknown"
+        return _("unknown")
 
 
 def _by_open_files(port: str) -> Iterator[int]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import NamedTuple
 
+from tornillo.language import _
 from tornillo.protocol import (
     IMAGE_HEADER,
     MESSAGE_MAX,
@@ -60,7 +61,11 @@ class ImageError(ValueError):
 
     def __init__(self, refusal: Refusal, operation: int) -> None:
         """Keep the codes."""
-        super().__init__(f"{refusal.name} at operation {operation}")
+        super().__init__(
+            _("{refusal} at operation {operation}").format(
+                refusal=refusal.name, operation=operation
+            )
+        )
         self.refusal = refusal
         self.operation = operation
 
@@ -87,7 +92,7 @@ def unpack_segments(data: bytes) -> Iterator[Segment]:
     at = 0
     while at < len(data):
         if len(data) < at + _SEGMENT_HEAD.size:
-            raise ValueError("a segment is cut off")
+            raise ValueError(_("a segment is cut off"))
         code, dx, dz = _SEGMENT_HEAD.unpack_from(data, at)
         kind = SegmentKind(code)
         at += _SEGMENT_HEAD.size
@@ -95,7 +100,7 @@ def unpack_segments(data: bytes) -> Iterator[Segment]:
             yield Segment(kind, dz, dx)
             continue
         if len(data) < at + 6:
-            raise ValueError("an arc is cut off")
+            raise ValueError(_("an arc is cut off"))
         cx = int.from_bytes(data[at : at + 3], "little", signed=True)
         cz = int.from_bytes(data[at + 3 : at + 6], "little", signed=True)
         at += 6

@@ -14,14 +14,12 @@ also while a watch runs. docs/library.md shows how it is used.
 """
 
 import struct
-from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
 from tornillo import versions
 from tornillo.errors import ChipError, LinkError, NoAnswerError, TornilloError
-from tornillo.frames import crc16
-from tornillo.image import ImageError, PartImage
+from tornillo.language import _
 from tornillo.link import Link, Transport
 from tornillo.machine import Machine
 from tornillo.opening import Notify, open_port
@@ -35,31 +33,30 @@ from tornillo.protocol import (
     SERIAL_LENGTH,
     SETTINGS,
     SLOT_NONE,
-    UPLOAD_PIECE_MAX,
     Axis,
     Command,
     ErrorCode,
     HelloData,
     HomedAxis,
-    PartInfoData,
     ProgressData,
     RunFlag,
     Setting,
     SettingGetData,
     SettingId,
     StatusData,
-    UploadCommitData,
 )
 from tornillo.status import Status
+from tornillo.store import PartStore
 from tornillo.stored import StoredPart
 from tornillo.watching import StatusCallback, Watch
 
-Progress = Callable[[int, int], None]
+#: Longer than a request that was lost and is repeated takes.
+JOG_PATIENCE_MS = 2 * FRAME_TIMEOUT_MS
 #: How often a watch asks, in seconds.
 WATCH_EVERY_S = 0.2
 
 
-class Lathe:
+class Lathe(PartStore):
     """A connected lathe. Leaving the `with` block closes the port; a running part goes on.
 
     `hello` is what the chip told about itself when it was last asked.
@@ -203,20 +200,26 @@ class Lathe:
         """
         if not OVERRIDE_MIN <= percent <= OVERRIDE_MAX:
             raise TornilloError(
-                f"a feed of {percent} % is not possible",
-                f"choose {OVERRIDE_MIN} to {OVERRIDE_MAX} percent of the programmed feed",
+                _("a feed of {percent} % is not possible").format(percent=percent),
+                _("choose {override_min} to {override_max} percent of the programmed feed").format(
+                    override_min=OVERRIDE_MIN, override_max=OVERRIDE_MAX
+                ),
             )
         self._request(Command.OVERRIDE, percent)
 
-    def jog(self, axis: Axis, steps: int, rate: int = 0) -> None:
+    def jog(
+        self, axis: Axis, steps: int, rate: int = 0, patience_ms: int = JOG_PATIENCE_MS
+    ) -> None:
         """Start to move `axis` by `steps`, at `rate` step/s or, for 0, at its rapid speed.
 
         Works also when not homed: then without soft limits, at most at the setting home_rate, and
         only away from a limit switch that is pressed (ChipError WRONG_WAY). When homed, a place
         outside the travel is refused. The slide brakes and stops when the chip hears nothing for
-        half a second: ask for the status, or use `touching.still()`. `hold()` brakes it at once.
+        `patience_ms`, 0 for ever: ask for the status, or use `touching.still()`. `hold()` brakes
+        it at once.
         """
-        self._move(Command.JOG, self._beside(axis, self.status().position(axis) + steps), rate)
+        place = self._beside(axis, self.status().position(axis) + steps)
+        self._move(Command.JOG, place, rate, patience_ms)
 
     def goto(self, x: int | None = None, z: int | None = None, rate: int = 0) -> None:
         """Start to move to machine steps `x`, `z` (None: where it is) at `rate` step/s, 0 rapid.
@@ -250,56 +253,6 @@ class Lathe:
         """Say that the tool now stands at part coordinate `steps` (X: radius) of `axis`."""
         self._request(Command.ZERO, axis, steps)
 
-    def upload(self, image: bytes, progress: Progress | None = None) -> int:
-        """Store a part image and return its slot.
-
-        `progress(sent, total)` is called after each piece. Raises ChipError with reason and
-        operation when the chip refuses the part, LinkError when it stored something else.
-        """
-        crc = crc16(image)
-        self._request(Command.UPLOAD_BEGIN, len(image), crc)
-        for offset in range(0, len(image), UPLOAD_PIECE_MAX):
-            piece = image[offset : offset + UPLOAD_PIECE_MAX]
-            self._request(Command.UPLOAD_DATA, offset, data=piece)
-            if progress is not None:
-                progress(offset + len(piece), len(image))
-        stored = UploadCommitData(*self._numbers(Command.UPLOAD_COMMIT))
-        if stored.crc != crc:
-            raise LinkError(
-                f"the chip stored another part than was sent (CRC {stored.crc:04x}, not {crc:04x})",
-                "upload it again; if it stays, the chip's memory is worn out",
-            )
-        return stored.slot
-
-    def part(self, slot: int) -> StoredPart | None:
-        """What is in `slot`; None when it is empty."""
-        info = PartInfoData(*self._numbers(Command.PART_INFO, slot))
-        return StoredPart.from_info(slot, info) if info.present else None
-
-    def parts(self) -> list[StoredPart]:
-        """Every stored part, by slot."""
-        found = (self.part(slot) for slot in range(self.hello.slots))
-        return [part for part in found if part is not None]
-
-    def find(self, name: str) -> StoredPart:
-        """The newest stored part called `name`, or the part in the slot of that number.
-
-        Raises TornilloError, naming the parts there are, when there is none.
-        """
-        parts = self.parts()
-        named = [part for part in parts if part.name == name]
-        numbered = [part for part in parts if str(part.slot) == name]
-        found = max(named, key=lambda part: part.generation, default=None)
-        if found is None and numbered:
-            found = numbered[0]
-        if found is None:
-            stored = ", ".join(part.name for part in parts) or "none"
-            raise TornilloError(
-                f"no part called {name!r} is stored in the lathe",
-                f"stored are: {stored}; upload it with `tornillo upload`, or see `tornillo parts`",
-            )
-        return found
-
     def outdated_parts(self) -> list[StoredPart]:
         """Stored parts made for other step sizes than the settings have: they cannot be cut."""
         steps = tuple(
@@ -307,37 +260,6 @@ class Lathe:
         )
         headers = ((part, self.image(part.slot).header) for part in self.parts())
         return [part for part, made in headers if (made.step_x_nm, made.step_z_nm) != steps]
-
-    def read(self, slot: int) -> bytes:
-        """The image of the part in `slot`."""
-        part = self.part(slot)
-        image = b""
-        while part is not None and len(image) < part.length:
-            piece = self._request(Command.PART_READ, slot, len(image))
-            if not piece:
-                break
-            image += piece
-        if part is None or len(image) != part.length or crc16(image) != part.crc:
-            raise ChipError(Command.PART_READ, ErrorCode.NO_PART)
-        return image
-
-    def image(self, slot: int) -> PartImage:
-        """The part in `slot` in steps; raises LinkError when it is none that this host knows."""
-        try:
-            return PartImage.unpack(self.read(slot))
-        except ImageError as error:
-            raise LinkError(
-                f"the part in slot {slot} cannot be understood: {error}",
-                "use the tornillo version that it was uploaded with",
-            ) from error
-
-    def select(self, slot: int) -> None:
-        """Make the part in `slot` the one that the RUN button cuts."""
-        self._request(Command.PART_SELECT, slot)
-
-    def delete(self, slot: int) -> None:
-        """Empty `slot`."""
-        self._request(Command.PART_DELETE, slot)
 
     def setting(self, setting: SettingId) -> SettingGetData:
         """Value and range of a setting."""
@@ -360,16 +282,20 @@ class Lathe:
         fits = all("!" <= character <= "~" and character != "," for character in serial)
         if len(serial) != SERIAL_LENGTH or not fits:
             raise TornilloError(
-                f'"{serial}" cannot be a serial number',
-                f"choose {SERIAL_LENGTH} letters, digits or signs, without spaces and commas, "
-                "like TN-00042",
+                _('"{serial}" cannot be a serial number').format(serial=serial),
+                _(
+                    "choose {serial_length} letters, digits or signs, without spaces and "
+                    "commas, like TN-00042"
+                ).format(serial_length=SERIAL_LENGTH),
             )
         self._request(Command.SERIAL_SET, serial.encode("ascii"))
         self.hello = self._greet()
         if self.serial_number != serial:
             raise LinkError(
-                f"the chip has kept {self.serial_number} as its serial number, not {serial}",
-                "try again; if it stays, the chip's memory is worn out",
+                _("the chip has kept {serial_number} as its serial number, not {serial}").format(
+                    serial_number=self.serial_number, serial=serial
+                ),
+                _("try again; if it stays, the chip's memory is worn out"),
             )
 
     def _greet(self) -> HelloData:
@@ -405,7 +331,8 @@ class Lathe:
             return RESPONSES[command].unpack(data)
         except struct.error as error:
             raise LinkError(
-                f"the answer to {command.name} has {len(data)} bytes, not "
-                f"{RESPONSES[command].size}",
-                "use the tornillo version that belongs to this firmware",
+                _("the answer to {command} has {data} bytes, not {size}").format(
+                    command=command.name, data=len(data), size=RESPONSES[command].size
+                ),
+                _("use the tornillo version that belongs to this firmware"),
             ) from error

@@ -2,6 +2,7 @@
 """One slide of a connected lathe, as the procedures of tornillo.procedures want it."""
 
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.lathe import WATCH_EVERY_S, Lathe
 from tornillo.protocol import Axis, StatusInput
 from tornillo.touching import TouchError, still
@@ -37,7 +38,7 @@ class LatheSlide:
         else:
             self._lathe.goto(z=position)
         if still(self._lathe, self._every).position(self._axis) != position:
-            raise TornilloError("the slide was stopped", "start again when you are ready")
+            raise TornilloError(_("the slide was stopped"), _("start again when you are ready"))
 
     def touch(self, end: int) -> int:
         """Move slowly until the contact closes, and stay; the position."""
@@ -45,7 +46,7 @@ class LatheSlide:
         status = still(self._lathe, self._every)
         if StatusInput.TOUCHED not in status.inputs:
             raise TouchError(
-                "no contact was found", "bring the tool nearer, or search farther: --within"
+                _("no contact was found"), _("bring the tool nearer, or search farther: --within")
             )
         return status.position(self._axis)
 

@@ -15,6 +15,7 @@ from typing import Protocol
 
 from tornillo.errors import ChipError, LinkError, NoAnswerError
 from tornillo.frames import DELIMITER, Frame, FrameError, decode, encode
+from tornillo.language import _
 from tornillo.protocol import (
     FRAME_RESPONSE_BIT,
     FRAME_TIMEOUT_MS,
@@ -70,13 +71,13 @@ class Link:
         """
         with self._lock:
             if self._closed:
-                raise LinkError("the port has been closed", "open the lathe again")
+                raise LinkError(_("the port has been closed"), _("open the lathe again"))
             self._seq = 0 if command is Command.HELLO else (self._seq + 1) & 0xFF
             response = self._exchange(Frame(self._seq, command, payload))
         if not response:
             raise LinkError(
-                f"the answer to {command.name} is empty",
-                "use the tornillo version that belongs to this firmware",
+                _("the answer to {command} is empty").format(command=command.name),
+                _("use the tornillo version that belongs to this firmware"),
             )
         if response[0] == ErrorCode.OK:
             return response[1:]
@@ -108,14 +109,21 @@ class Link:
                     return response
         except OSError as error:
             raise LinkError(
-                f"the connection was lost: {error}",
-                "check the cable and that the lathe has power, then try again; "
-                "a part being cut goes on without the computer",
+                _("the connection was lost: {error}").format(error=error),
+                _(
+                    "check the cable and that the lathe has power, then try again; a part "
+                    "being cut goes on without the computer"
+                ),
             ) from error
         raise NoAnswerError(
-            f"no answer to {Command(frame.code).name} after {tries} tries",
-            "check that the port is the lathe's and that no other program uses it; "
-            "unplug and plug in the cable",
+            _("no answer to {name} after {tries} tries").format(
+                name=Command(frame.code).name, tries=tries
+            ),
+            _(
+                "check that the port is the lathe's and that no other program uses it; "
+                "unplug and plug in the cable; a part being cut goes on without the "
+                "computer"
+            ),
             self.heard,
         )
 
@@ -174,8 +182,9 @@ def _refused(command: Command, response: bytes) -> Exception:
             return ChipError(command, code, Refusal(response[1]), response[2])
     except ValueError:
         return LinkError(
-            f"the chip refused {command.name} with code {response.hex(' ')}, "
-            "which this tornillo does not know",
-            "use the tornillo version that belongs to this firmware",
+            _(
+                "the chip refused {command} with code {hex}, which this tornillo does not know"
+            ).format(command=command.name, hex=response.hex(" ")),
+            _("use the tornillo version that belongs to this firmware"),
         )
     return ChipError(command, code)

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tornillo.errors import MachineError
+from tornillo.language import _
 from tornillo.machine_file import load_file
 from tornillo.protocol import HelloData, SettingId
 
@@ -41,7 +42,7 @@ class Machine:
     ) -> "Machine":
         """The machine as the chip describes it; `slowest`, `fastest`: spindle, rev/min."""
         return cls(
-            name="the connected lathe",
+            name=_("the connected lathe"),
             step_x_nm=hello.step_x_nm,
             step_z_nm=hello.step_z_nm,
             travel_x=hello.travel_x,
@@ -68,8 +69,10 @@ class Machine:
         def value(setting: SettingId) -> int:
             if setting not in values:
                 raise MachineError(
-                    f"machine {name}: [settings] {setting.name.lower()} is missing",
-                    "write a whole file with `tornillo settings save FILE`",
+                    _("machine {name}: [settings] {setting} is missing").format(
+                        name=name, setting=setting.name.lower()
+                    ),
+                    _("write a whole file with `tornillo settings save FILE`"),
                 )
             return values[setting]
 

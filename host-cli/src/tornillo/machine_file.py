@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from tornillo.errors import MachineError, PartError
+from tornillo.language import _
 from tornillo.protocol import SETTINGS, Setting, SettingId
 from tornillo.setting_names import BY_NAME, amount, nearest, span
 from tornillo.toml_source import Source
@@ -67,7 +68,8 @@ def load_file(name: str) -> dict[SettingId, int]:
     except (OSError, UnicodeDecodeError) as error:
         names = ", ".join(sorted(entry.name.removesuffix(".toml") for entry in known.iterdir()))
         raise MachineError(
-            f"machine {name}: {error}", f"use one of {names}, or the path of a machine file"
+            _("machine {name}: {error}").format(name=name, error=error),
+            _("use one of {names}, or the path of a machine file").format(names=names),
         ) from error
     return read_file(text, name)
 
@@ -83,12 +85,18 @@ def _read(source: Source) -> dict[SettingId, int]:
     for key in source.values:
         if key not in ("machine", "settings"):
             close = difflib.get_close_matches(key, ["machine", "settings"], n=1)
-            remedy = f'did you mean "{close[0]}"?' if close else "use [machine] and [settings]"
-            source.refuse((key,), f'unknown table "{key}"', remedy)
+            remedy = (
+                _('did you mean "{close}"?').format(close=close[0])
+                if close
+                else _("use [machine] and [settings]")
+            )
+            source.refuse((key,), _('unknown table "{key}"').format(key=key), remedy)
     table = source.values.get("settings")
     if not isinstance(table, dict) or not table:
         source.refuse(
-            (), "the table [settings] is missing", "write one with `tornillo settings save FILE`"
+            (),
+            _("the table [settings] is missing"),
+            _("write one with `tornillo settings save FILE`"),
         )
     return {_entry(source, key).id: _value(source, key, table[key]) for key in table}
 
@@ -96,7 +104,7 @@ def _read(source: Source) -> dict[SettingId, int]:
 def _entry(source: Source, key: str) -> Setting:
     """The setting of a key."""
     if key not in BY_NAME:
-        source.refuse(("settings", key), f'unknown setting "{key}"', nearest(key))
+        source.refuse(("settings", key), _('unknown setting "{key}"').format(key=key), nearest(key))
     return BY_NAME[key]
 
 
@@ -104,12 +112,20 @@ def _value(source: Source, key: str, value: object) -> int:
     """The value of a key, inside its range."""
     entry = BY_NAME[key]
     if isinstance(value, bool) or not isinstance(value, int):
-        _refuse(source, key, f"{key} must be a whole number, not {value!r}")
+        _refuse(
+            source,
+            key,
+            _("{key} must be a whole number, not {value!r}").format(key=key, value=value),
+        )
     if not entry.minimum <= value <= entry.maximum:
-        _refuse(source, key, f"{key} cannot be {amount(entry, value)}")
+        _refuse(
+            source, key, _("{key} cannot be {entry}").format(key=key, entry=amount(entry, value))
+        )
     return value
 
 
 def _refuse(source: Source, key: str, message: str) -> NoReturn:
     """Refuse the value of a key with its range."""
-    source.refuse(("settings", key), message, f"it goes from {span(BY_NAME[key])}")
+    source.refuse(
+        ("settings", key), message, _("it goes from {by_name}").format(by_name=span(BY_NAME[key]))
+    )

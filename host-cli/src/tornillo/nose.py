@@ -20,6 +20,7 @@ from tornillo.contour import (
     turn,
 )
 from tornillo.corners import SMOOTH, joined
+from tornillo.language import _
 
 SQUARE = math.pi / 2
 BISECTIONS = 16
@@ -59,7 +60,7 @@ def tip_path(
     _no_gouge(path, whole, nose, fine)
     moved = joined([element.shifted(Point(-nose, -nose)) for element in path])
     if not moved:
-        raise NoseError("the nose does not reach this piece", contour[0].place, contour[0].end)
+        raise NoseError(_("the nose does not reach this piece"), contour[0].place, contour[0].end)
     return moved
 
 
@@ -68,7 +69,7 @@ def largest_nose(
 ) -> float:
     """The largest nose radius below `nose` that fits the contour."""
     low, high = 0.0, nose
-    for _ in range(BISECTIONS):
+    for _step in range(BISECTIONS):
         middle = (low + high) / 2
         try:
             tip_path(contour, middle, fine, before, after)
@@ -83,7 +84,9 @@ def _moved(element: Element, nose: float) -> Element:
     if isinstance(element, Arc) and not element.convex and element.radius < nose + SAME:
         if element.radius < nose - SAME:
             raise NoseError(
-                f"the concave arc has a radius of {element.radius:.6g} only",
+                _("the concave arc has a radius of {radius:.6g} only").format(
+                    radius=element.radius
+                ),
                 element.place,
                 element.end,
             )
@@ -118,7 +121,7 @@ class _Centre:
         if angle > 0 or (lines and (mitre or _square(one, angle))):
             places = intersections(a, b)
             if not places:
-                raise NoseError("the nose does not fit the inside corner", two.place, one.end)
+                raise NoseError(_("the nose does not fit the inside corner"), two.place, one.end)
             place = min(places, key=lambda at: distance(at, a.end) + distance(at, b.start))
             self._moved[number] = replace(a, end=place)
             self._moved[number + 1] = replace(b, start=place)
@@ -157,7 +160,7 @@ def _must_run_on(element: Element, path: Element) -> None:
     else:
         gone = math.pi - path.sweep
     if gone < -SAME:
-        raise NoseError("the nose does not reach this piece", element.place, element.end)
+        raise NoseError(_("the nose does not reach this piece"), element.place, element.end)
 
 
 def _no_gouge(path: list[Element], whole: list[Element], nose: float, fine: float) -> None:
@@ -168,7 +171,7 @@ def _no_gouge(path: list[Element], whole: list[Element], nose: float, fine: floa
         for place in _samples(element):
             for other in near:
                 if away(other, place) < nose - fine:
-                    raise NoseError("the nose would cut into this piece", other.place, other.end)
+                    raise NoseError(_("the nose would cut into this piece"), other.place, other.end)
 
 
 def _samples(element: Element) -> list[Point]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from tornillo import udev
 from tornillo.errors import PortError
 from tornillo.holders import MODEM_MANAGER, holders, modem_manager_runs
+from tornillo.language import _
 from tornillo.protocol import FRAME_TIMEOUT_MS
 
 if TYPE_CHECKING:
@@ -57,7 +58,11 @@ def open_port(name: str, notify: Notify | None = None) -> "Serial":
             if reason is None or time.monotonic() >= end:
                 raise _explained(name, error) from error
         if notify is not None:
-            notify(f"{reason}; trying for {PATIENCE_S:g} s")
+            notify(
+                _("{reason}; trying for {patience_s:g} s").format(
+                    reason=reason, patience_s=PATIENCE_S
+                )
+            )
             notify = None
         time.sleep(RETRY_S)
 
@@ -81,11 +86,13 @@ def _passing(name: str, trouble: Trouble) -> str | None:
     if not sys.platform.startswith("linux"):
         return None
     if trouble is Trouble.PERMISSION and _just_plugged(name):
-        return f"{name} is still being set up by the system"
+        return _("{name} is still being set up by the system").format(name=name)
     if trouble is Trouble.HELD:
         known = {holder.name for holder in holders(name)}
         if known <= {MODEM_MANAGER} and (known or modem_manager_runs() or _just_plugged(name)):
-            return f"{name} is in use: ModemManager may be trying whether it is a modem"
+            return _("{name} is in use: ModemManager may be trying whether it is a modem").format(
+                name=name
+            )
     return None
 
 
@@ -106,10 +113,13 @@ def _explained(name: str, error: OSError) -> PortError:
         return _in_use(name)
     if trouble is Trouble.MISSING:
         return PortError(
-            f"there is no port {name}",
-            "check the name, or leave out --port to find the lathe by its USB id",
+            _("there is no port {name}").format(name=name),
+            _("check the name, or leave out --port to find the lathe by its USB id"),
         )
-    return PortError(f"{name} cannot be opened: {error}", "check that it is the lathe's port")
+    return PortError(
+        _("{name} cannot be opened: {error}").format(name=name, error=error),
+        _("check that it is the lathe's port"),
+    )
 
 
 def _in_use(name: str) -> PortError:
@@ -117,36 +127,48 @@ def _in_use(name: str) -> PortError:
     found = holders(name)
     if any(holder.name == MODEM_MANAGER for holder in found):
         return PortError(
-            f"{name} is in use by ModemManager, which tries whether it is a modem",
-            f"make it leave the lathe alone: `{udev.COMMAND}`, then plug the cable in again; "
-            "or wait half a minute",
+            _("{name} is in use by ModemManager, which tries whether it is a modem").format(
+                name=name
+            ),
+            _(
+                "make it leave the lathe alone: `{command}`, then plug the cable in again; "
+                "or wait half a minute"
+            ).format(command=udev.COMMAND),
         )
     if found:
         return PortError(
-            f"{name} is in use by another program: {', '.join(map(str, found))}",
-            "close that program, then try again",
+            _("{name} is in use by another program: {list}").format(
+                name=name, list=", ".join(map(str, found))
+            ),
+            _("close that program, then try again"),
         )
-    remedy = "close the other program (a terminal, another tornillo), then try again"
+    remedy = _("close the other program (a terminal, another tornillo), then try again")
     if sys.platform.startswith("linux"):
-        remedy += (
-            "; right after plugging in, ModemManager may be trying the port: wait half a minute, "
-            f"or make it leave the lathe alone with `{udev.COMMAND}`"
-        )
-    return PortError(f"{name} is in use by another program", remedy)
+        remedy += _(
+            "; right after plugging in, ModemManager may be trying the port: wait half "
+            "a minute, or make it leave the lathe alone with `{command}`"
+        ).format(command=udev.COMMAND)
+    return PortError(_("{name} is in use by another program").format(name=name), remedy)
 
 
 def _no_permission(name: str) -> PortError:
     """The port belongs to others."""
-    message = f"no permission to use {name}{_owner(name)}"
+    message = _("no permission to use {name}{name2}").format(name=name, name2=_owner(name))
     if not sys.platform.startswith("linux"):
-        return PortError(message, f"see who may with `ls -l {name}`")
-    group = "or join the group that may: `sudo usermod -aG dialout $USER`, then log in again"
+        return PortError(message, _("see who may with `ls -l {name}`").format(name=name))
+    group = _("or join the group that may: `sudo usermod -aG dialout $USER`, then log in again")
     if udev.installed():
         return PortError(
-            message, f"the udev rule is there: plug the cable out and in again, {group}"
+            message,
+            _("the udev rule is there: plug the cable out and in again, {group}").format(
+                group=group
+            ),
         )
     return PortError(
-        message, f"install the udev rule: `{udev.COMMAND}`, then plug the cable in again; {group}"
+        message,
+        _("install the udev rule: `{command}`, then plug the cable in again; {group}").format(
+            command=udev.COMMAND, group=group
+        ),
     )
 
 
@@ -154,6 +176,8 @@ def _owner(name: str) -> str:
     """Whose the port is, where the system tells."""
     try:
         path = Path(name)
-        return f", which belongs to {path.owner()} and the group {path.group()}"
+        return _(", which belongs to {owner} and the group {group}").format(
+            owner=path.owner(), group=path.group()
+        )
     except (OSError, KeyError, NotImplementedError):
         return ""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tornillo.contour import Element, Line, Point
 from tornillo.cutting import Cut, read_overrides
+from tornillo.language import _
 from tornillo.profiles import read_arc, read_points
 from tornillo.protocol import MESSAGE_MAX
 from tornillo.toml_source import Source, Table
@@ -55,7 +56,7 @@ class Operation:
     @property
     def title(self) -> str:
         """Number and type for messages."""
-        return f"operation {self.position + 1} ({self.type})"
+        return _("operation {position} ({type})").format(position=self.position + 1, type=self.type)
 
 
 @dataclass(frozen=True)
@@ -90,8 +91,10 @@ def _read_face(table: Table, context: Context) -> Shape:
     if inner >= context.stock_radius:
         table.refuse(
             "diameter",
-            f"{table.title}: the operation has nothing to cut: the stock is not larger",
-            "make the cut smaller than the stock",
+            _("{title}: the operation has nothing to cut: the stock is not larger").format(
+                title=table.title
+            ),
+            _("make the cut smaller than the stock"),
         )
     line = Line(Point(z, inner), Point(z, context.stock_radius))
     return Contour((line,), ("diameter", "z"))
@@ -102,7 +105,7 @@ def _read_cylinder(table: Table, context: Context) -> Shape:
     """Turn to a diameter from z to z."""
     start, end = table.pair("z")
     radius = table.number("diameter") / 2
-    _in_order(table, "z", start, end, "[free end, end towards the chuck]")
+    _in_order(table, "z", start, end, _("[free end, end towards the chuck]"))
     return Contour((Line(Point(start, radius), Point(end, radius)),), ("diameter", "z"))
 
 
@@ -110,7 +113,7 @@ def _read_cylinder(table: Table, context: Context) -> Shape:
 def _read_cone(table: Table, context: Context) -> Shape:
     """Turn from one diameter to another."""
     start, end = table.point("start"), table.point("end")
-    _in_order(table, "end", start.z, end.z, "the start at the free end")
+    _in_order(table, "end", start.z, end.z, _("the start at the free end"))
     return Contour((Line(start, end),), ("start", "end"))
 
 
@@ -118,13 +121,13 @@ def _read_cone(table: Table, context: Context) -> Shape:
 def _read_arc(table: Table, context: Context) -> Shape:
     """Turn along an arc."""
     start, end = table.point("start"), table.point("end")
-    _in_order(table, "end", start.z, end.z, "the start at the free end")
+    _in_order(table, "end", start.z, end.z, _("the start at the free end"))
     arc = read_arc(table, start, end, exact=context.tip)
     if isinstance(arc, Line):
         table.refuse(
             "",
-            f"{table.title}: radius is missing",
-            "add a line like radius = 5.0, above 0 convex, below 0 concave; or center, or via",
+            _("{title}: radius is missing").format(title=table.title),
+            _("add a line like radius = 5.0, above 0 convex, below 0 concave; or center, or via"),
         )
     return Contour((arc,), ("start", "end"))
 
@@ -138,7 +141,7 @@ def _read_groove(table: Table, context: Context) -> Shape:
     """Plunge to a diameter between two walls."""
     front, back = table.pair("z")
     if front < back:
-        _in_order(table, "z", front, back, "[free end, end towards the chuck]")
+        _in_order(table, "z", front, back, _("[free end, end towards the chuck]"))
     return Plunge(front, back, table.number("diameter"))
 
 
@@ -181,9 +184,14 @@ AUTO_ORDER = ("face", "cylinder", "cone", "arc")
 
 def read_operation(source: Source, position: int, entry: object, context: Context) -> Operation:
     """One operation of any type; raises PartError."""
-    table = Table(source, ("operation", position), entry, f"operation {position + 1}")
+    table = Table(
+        source,
+        ("operation", position),
+        entry,
+        _("operation {position}").format(position=position + 1),
+    )
     kind = table.text("type", tuple(READERS))
-    table.title = f"operation {position + 1} ({kind})"
+    table.title = _("operation {position} ({kind})").format(position=position + 1, kind=kind)
     tool, cut, roughing = context.tools[0], context.cut, ROUGHING[0]
     if kind not in PAUSES:
         if table.has("tool"):
@@ -209,8 +217,10 @@ def _in_order(table: Table, key: str, start: float, end: float, how: str) -> Non
     if start <= end:
         table.refuse(
             key,
-            f"{table.title}: the operation has nothing to cut: from z = {start:g} to {end:g}",
-            f"write {how}; towards the chuck z gets smaller",
+            _("{title}: the operation has nothing to cut: from z = {start:g} to {end:g}").format(
+                title=table.title, start=start, end=end
+            ),
+            _("write {how}; towards the chuck z gets smaller").format(how=how),
         )
 
 
@@ -219,13 +229,19 @@ def _message(table: Table, text: str) -> str:
     if not text.isascii() or not text.isprintable():
         table.refuse(
             "message",
-            f"{table.title}: the message has characters that the lathe does not know",
-            "use ASCII letters, digits and signs",
+            _("{title}: the message has characters that the lathe does not know").format(
+                title=table.title
+            ),
+            _("use ASCII letters, digits and signs"),
         )
     if len(text) > MESSAGE_MAX:
         table.refuse(
             "message",
-            f'{table.title}: the message "{text}" has {len(text)} characters',
-            f"use at most {MESSAGE_MAX}, those about diameter and depth of a drill included",
+            _('{title}: the message "{text}" has {text2} characters').format(
+                title=table.title, text=text, text2=len(text)
+            ),
+            _(
+                "use at most {message_max}, those about diameter and depth of a drill included"
+            ).format(message_max=MESSAGE_MAX),
         )
     return text

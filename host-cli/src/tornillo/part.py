@@ -15,6 +15,7 @@ from tornillo.cutting import Cut, read_cut
 from tornillo.errors import PartError
 from tornillo.explain import explain
 from tornillo.image import PartImage
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.operations import Context, Operation, in_auto_order, read_operation
 from tornillo.protocol import Refusal
@@ -55,9 +56,10 @@ class Part:
         try:
             text = Path(path).read_text(encoding="utf-8")
         except (OSError, UnicodeDecodeError) as error:
-            reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
+            reason = getattr(error, "strerror", None) or _("it is not UTF-8 text")
             raise PartError(
-                f"{path}: the file cannot be read: {reason}", "check its name and place"
+                _("{path}: the file cannot be read: {reason}").format(path=path, reason=reason),
+                _("check its name and place"),
             ) from error
         return cls.parse(text, str(path))
 
@@ -68,7 +70,7 @@ class Part:
         Raises PartError when it cannot be understood.
         """
         source = Source(name, text)
-        top = Table(source, (), source.values, "the file")
+        top = Table(source, (), source.values, _("the file"))
         title, units, order, tip = _read_title(top.table("part"))
         stock = _read_stock(top.table("stock"))
         cut = read_cut(top.table("cut"))
@@ -147,8 +149,12 @@ def _read_title(table: Table) -> tuple[str, str, str, bool]:
     """Name, units, order, and whether the file holds paths of the tip."""
     name = table.text("name")
     if not NAME.fullmatch(name.encode("utf-8")) or "\0" in name:
-        remedy = REFUSAL_TEXTS[Refusal.NAME].remedy
-        table.refuse("name", f'{table.title}: the name "{name}" cannot be used', remedy)
+        remedy = _(REFUSAL_TEXTS[Refusal.NAME].remedy)
+        table.refuse(
+            "name",
+            _('{title}: the name "{name}" cannot be used').format(title=table.title, name=name),
+            remedy,
+        )
     units = table.text("units", tuple(NM_PER_UNIT))
     order = table.text("order", ORDERS, default=ORDERS[0])
     tip = table.text("path", PATHS, default=PATHS[0]) == "tip"

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from tornillo.drives import Drives
 from tornillo.image import SegmentKind
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.moves import Halt, Move, Pass, Place, Plan, Role, Stop
 from tornillo.part import Part
@@ -150,5 +151,5 @@ def show_time(seconds: float) -> str:
         return f"{seconds:.1f} s"
     whole = round(seconds)
     if whole < 3600:
-        return f"{whole // 60} min {whole % 60:02d} s"
-    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+        return _("{whole} min {whole2:02d} s").format(whole=whole // 60, whole2=whole % 60)
+    return _("{whole} h {whole2:02d} min").format(whole=whole // 3600, whole2=whole % 3600 // 60)

@@ -4,23 +4,26 @@
 from collections.abc import Iterator, Sequence
 
 from tornillo.image import SegmentKind
+from tornillo.language import _, later, plural
 from tornillo.moves import Halt, Move, Pass, Place, Role, Stop
 from tornillo.plan_report import PlanReport, show_time
 from tornillo.units import DECIMALS
 
 HALTS = {
-    Halt.PAUSE: "pause, RUN goes on",
-    Halt.DRILL: "drill by hand, RUN goes on",
-    Halt.TOOL: "tool change, RUN goes on",
-    Halt.END: "the end, parked",
+    Halt.PAUSE: later("pause, RUN goes on"),
+    Halt.DRILL: later("drill by hand, RUN goes on"),
+    Halt.TOOL: later("tool change, RUN goes on"),
+    Halt.END: later("the end, parked"),
 }
 #: The lathe waits once for a pause and the change of tool behind it.
-WITH_IT = "change the tool too"
+WITH_IT = later("change the tool too")
 ROLES = {
-    Role.SMOOTHING: "along the contour",
-    Role.FINISHING: "finishing",
-    Role.SPRING: "spring pass",
-    Role.PLUNGING: "plunge",
+    Role.ROUGHING: later("roughing"),
+    Role.FACING: later("facing"),
+    Role.SMOOTHING: later("along the contour"),
+    Role.FINISHING: later("finishing"),
+    Role.SPRING: later("spring pass"),
+    Role.PLUNGING: later("plunge"),
 }
 
 
@@ -46,7 +49,7 @@ class PlanText:
     def lines(self, with_moves: bool) -> Iterator[str]:
         """The whole text; every move instead of every pass when wanted."""
         report = self.report
-        yield f"{report.part.name}, lengths in {report.part.units}"
+        yield _("{part}, lengths in {units}").format(part=report.part.name, units=report.part.units)
         yield ""
         yield from self._moves() if with_moves else self._passes()
         yield ""
@@ -65,12 +68,26 @@ class PlanText:
     def _what(self, stroke: Pass) -> str:
         """What a pass is for."""
         if stroke.role is Role.SMOOTHING:
-            return f"{ROLES[stroke.role]}, leaves {self._length(self.report.depth(stroke))}"
-        return ROLES[stroke.role] if stroke.role in ROLES else str(stroke.role.value)
+            return _("{roles}, leaves {stroke}").format(
+                roles=_(ROLES[stroke.role]), stroke=self._length(self.report.depth(stroke))
+            )
+        return _(ROLES[stroke.role])
 
     def _passes(self) -> Iterator[str]:
         """One line for each pass or stop."""
-        rows = [("op", "pass", "", "from z", "diameter", "to z", "diameter", "depth", "time")]
+        rows = [
+            (
+                _("op"),
+                _("pass"),
+                "",
+                _("from z"),
+                _("diameter"),
+                _("to z"),
+                _("diameter"),
+                _("depth"),
+                _("time"),
+            )
+        ]
         report = self.report
         waits = False
         for step, seconds in zip(report.plan.steps, report.timing.steps, strict=True):
@@ -78,7 +95,7 @@ class PlanText:
             parked, waits = waits, isinstance(step, Stop)
             if isinstance(step, Stop):
                 together = parked and step.halt is Halt.TOOL
-                what = WITH_IT if together else HALTS[step.halt]
+                what = _(WITH_IT if together else HALTS[step.halt])
                 what += f": {step.text}" if step.text else ""
                 rows.append(("", "", what, "", "", "", "", "", time))
                 continue
@@ -91,7 +108,18 @@ class PlanText:
 
     def _moves(self) -> Iterator[str]:
         """One line for each move."""
-        rows = [("op", "pass", "", "to z", "diameter", "feed", "centre z", "diameter")]
+        rows = [
+            (
+                _("op"),
+                _("pass"),
+                "",
+                _("to z"),
+                _("diameter"),
+                _("feed"),
+                _("centre z"),
+                _("diameter"),
+            )
+        ]
         for step in self.report.plan.steps:
             for move in step.moves:
                 number = str(step.number) if isinstance(step, Pass) else ""
@@ -101,7 +129,7 @@ class PlanText:
     def _move(self, move: Move) -> tuple[str, str, str, str, str, str]:
         """Kind, end, feed and centre."""
         scale = self.report.scale
-        feed = "rapid" if move.rapid else f"{scale.per_minute(move.feed):.4g}"
+        feed = _("rapid") if move.rapid else f"{scale.per_minute(move.feed):.4g}"
         centre = ("", "")
         if move.kind is not SegmentKind.LINE:
             z, x = move.start[0] + move.cz / 256, move.start[1] + move.cx / 256
@@ -110,7 +138,7 @@ class PlanText:
 
     def _operations(self) -> Iterator[str]:
         """One line for each operation."""
-        rows = [("operation", "tool", "passes", "time", "in the cut")]
+        rows = [(_("operation"), _("tool"), _("passes"), _("time"), _("in the cut"))]
         for operation in self.report.operations():
             passes = str(operation.passes) if operation.tool else ""
             times = show_time(operation.seconds), show_time(operation.feeding)
@@ -124,21 +152,34 @@ class PlanText:
         report = self.report
         timing = report.timing
         rows = [
-            ("passes", str(len(report.plan.passes))),
-            ("time", f"about {show_time(timing.total)}{self._waits()}"),
-            ("in the cut", f"{show_time(sum(timing.feeding))}, {timing.share:.0%} of the time"),
-            ("at least", f"{show_time(sum(timing.least))}, length of cut by feed"),
-            ("steps", f"X {report.steps_x:,}, Z {report.steps_z:,}"),
+            (_("passes"), str(len(report.plan.passes))),
+            (
+                _("time"),
+                _("about {total}{waits}").format(
+                    total=show_time(timing.total), waits=self._waits()
+                ),
+            ),
+            (
+                _("in the cut"),
+                _("{feeding}, {share:.0%} of the time").format(
+                    feeding=show_time(sum(timing.feeding)), share=timing.share
+                ),
+            ),
+            (
+                _("at least"),
+                _("{least}, length of cut by feed").format(least=show_time(sum(timing.least))),
+            ),
+            (_("steps"), f"X {report.steps_x:,}, Z {report.steps_z:,}"),
         ]
         yield from table(rows, left=(0, 1))
 
     def _waits(self) -> str:
         """What the estimate does not contain."""
         found = []
-        for count, name in (
-            (self.report.tool_changes, "tool change"),
-            (self.report.pauses, "pause"),
-        ):
-            if count:
-                found.append(f"{count} {name}{'s' if count > 1 else ''}")
-        return f", without {' and '.join(found)}" if found else ""
+        changes, pauses = self.report.tool_changes, self.report.pauses
+        if changes:
+            text = plural("{count} tool change", "{count} tool changes", changes)
+            found.append(text.format(count=changes))
+        if pauses:
+            found.append(plural("{count} pause", "{count} pauses", pauses).format(count=pauses))
+        return _(", without {found}").format(found=_(" and ").join(found)) if found else ""

@@ -11,6 +11,7 @@ show is what will be cut. docs/passes.md explains it with pictures.
 from collections.abc import Callable, Iterable, Iterator
 
 from tornillo.image import PartImage, Record
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.material import (
     FAR,
@@ -78,14 +79,14 @@ class Planner:
     def tool(self) -> ToolRecord:
         """The tool in use; raises ValueError when there is none."""
         if self._tool is None:
-            raise ValueError("the part has no tool")
+            raise ValueError(_("the part has no tool"))
         return self._tool
 
     @property
     def cut(self) -> CutRecord:
         """The cutting data in use; raises ValueError when there are none."""
         if self._cut is None:
-            raise ValueError("the part has no cutting data")
+            raise ValueError(_("the part has no cutting data"))
         return self._cut
 
     def steps(self) -> Iterator[Pass | Stop]:

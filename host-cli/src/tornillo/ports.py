@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tornillo.errors import PortError
+from tornillo.language import _
 from tornillo.protocol import USB_PRODUCT_ID, USB_VENDOR_ID
 
 WINDOWS_NAME = re.compile(r"(?:\\\\[.?]\\)?(COM\d+):?", re.IGNORECASE)
@@ -25,7 +26,9 @@ class FoundLathe(NamedTuple):
 
     def __str__(self) -> str:
         """Both, for a person."""
-        return f"{self.port} (serial number {self.serial_number})"
+        return _("{port} (serial number {serial_number})").format(
+            port=self.port, serial_number=self.serial_number
+        )
 
 
 def found_lathes() -> list[FoundLathe]:
@@ -79,27 +82,33 @@ def _none(wanted: str | None, plugged: list[FoundLathe]) -> PortError:
     """No lathe, or not the wanted one."""
     if wanted is None or not plugged:
         return PortError(
-            f"no lathe found: no port has the USB id {USB_VENDOR_ID:04x}:{USB_PRODUCT_ID:04x}",
-            "plug in the USB cable and switch the lathe on, or name the port with --port",
+            _(
+                "no lathe found: no port has the USB id {usb_vendor_id:04x}:{usb_product_id:04x}"
+            ).format(usb_vendor_id=USB_VENDOR_ID, usb_product_id=USB_PRODUCT_ID),
+            _("plug in the USB cable and switch the lathe on, or name the port with --port"),
         )
     return PortError(
-        f"no lathe has the serial number {wanted}, and no port is called so",
-        f"plugged in: {_listed(plugged)}",
+        _("no lathe has the serial number {wanted}, and no port is called so").format(
+            wanted=wanted
+        ),
+        _("plugged in: {plugged}").format(plugged=_listed(plugged)),
     )
 
 
 def _several(found: list[FoundLathe]) -> PortError:
     """More than one lathe, and how to choose."""
     first = found[0]
-    remedy = f"choose one: `tornillo --port {first.port} ...`"
+    remedy = _("choose one: `tornillo --port {port} ...`").format(port=first.port)
     if len({lathe.serial_number for lathe in found}) == len(found):
-        remedy += f" or `tornillo --port {first.serial_number} ...`"
-    else:
-        remedy += (
-            "; to choose by serial number give each its own, "
-            f"`tornillo --port {first.port} serial --random`"
+        remedy += _(" or `tornillo --port {serial_number} ...`").format(
+            serial_number=first.serial_number
         )
-    return PortError(f"more than one lathe found: {_listed(found)}", remedy)
+    else:
+        remedy += _(
+            "; to choose by serial number give each its own, `tornillo --port {port} "
+            "serial --random`"
+        ).format(port=first.port)
+    return PortError(_("more than one lathe found: {found}").format(found=_listed(found)), remedy)
 
 
 def _listed(found: list[FoundLathe]) -> str:

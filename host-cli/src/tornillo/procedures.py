@@ -10,6 +10,7 @@ from typing import Protocol
 
 from tornillo.calibration import Ways
 from tornillo.errors import TornilloError
+from tornillo.language import _
 
 #: More than any backlash: so far the tool comes to a place from the side that counts.
 APPROACH = 300
@@ -56,19 +57,21 @@ def by_gauge(slide: Slide, forward: int, rounds: int, ask: Ask, tell: Tell) -> l
     start = slide.position - APPROACH
     found: list[Ways] = []
     while len(found) < rounds:
-        number = f"round {len(found) + 1} of {rounds}"
+        number = _("round {found} of {rounds}").format(found=len(found) + 1, rounds=rounds)
         slide.go(start + APPROACH)
         slide.go(start)
-        first = ask(f"{number}: reading at the start")
+        first = ask(_("{number}: reading at the start").format(number=number))
         slide.go(start - forward)
-        far = ask(f"{number}: reading {forward} steps further")
+        far = ask(
+            _("{number}: reading {forward} steps further").format(number=number, forward=forward)
+        )
         slide.go(start)
-        last = ask(f"{number}: reading back at the start")
+        last = ask(_("{number}: reading back at the start").format(number=number))
         there, back = far - first, last - far
         if there * back < 0:
             found.append(Ways(abs(there), abs(back)))
         else:
-            tell("these readings do not go there and back; the round is made again")
+            tell(_("these readings do not go there and back; the round is made again"))
     slide.go(start + APPROACH)
     return found
 
@@ -81,22 +84,26 @@ def by_contact(slide: Slide, search: int, rounds: int) -> list[int]:
     """
     start = slide.position
     found = []
-    for _ in range(rounds):
+    for _round in range(rounds):
         touched = slide.touch(start - search)
         opened = 0
         while slide.contact():
             opened += 1
             if opened > OPENS_WITHIN:
                 raise TornilloError(
-                    f"the contact stayed closed over {OPENS_WITHIN} steps back",
-                    "look for chips between tool and work, and at the sensor's wires",
+                    _("the contact stayed closed over {opens_within} steps back").format(
+                        opens_within=OPENS_WITHIN
+                    ),
+                    _("look for chips between tool and work, and at the sensor's wires"),
                 )
             slide.go(touched + opened)
         if opened < 2 and slide.dead > 0:
             raise TornilloError(
-                "the contact opened at once: the lathe takes up as many dead steps as there are, "
-                "or more, so that they cannot be counted",
-                "raise the setting switch_travel of this axis, home, and measure again",
+                _(
+                    "the contact opened at once: the lathe takes up as many dead steps as "
+                    "there are, or more, so that they cannot be counted"
+                ),
+                _("raise the setting switch_travel of this axis, home, and measure again"),
             )
         found.append(slide.dead + opened - 1)
         slide.go(min(start, touched + opened + BACK_OFF))
@@ -111,16 +118,26 @@ def block_steps(
     start = slide.position
     found = []
     for number in range(1, rounds + 1):
-        ready(f"round {number} of {rounds}: take the block away")
+        ready(
+            _("round {number} of {rounds}: take the block away").format(
+                number=number, rounds=rounds
+            )
+        )
         bare = slide.touch(start - search)
         slide.go(start)
-        ready(f"round {number} of {rounds}: put the block on the work")
+        ready(
+            _("round {number} of {rounds}: put the block on the work").format(
+                number=number, rounds=rounds
+            )
+        )
         covered = slide.touch(start - search)
         slide.go(start)
         if covered <= bare:
             raise TornilloError(
-                f"with the block the tool touched at {covered}, without it at {bare}",
-                "the block belongs between tool and work; start again",
+                _("with the block the tool touched at {covered}, without it at {bare}").format(
+                    covered=covered, bare=bare
+                ),
+                _("the block belongs between tool and work; start again"),
             )
         found.append(block_um * 1000 / (covered - bare))
     return found

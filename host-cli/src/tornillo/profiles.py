@@ -18,6 +18,7 @@ from tornillo.contour import (
     smallest_radius,
 )
 from tornillo.corners import with_corners
+from tornillo.language import _
 from tornillo.toml_source import Table
 
 #: How far, in file units, the ends may be from a circle about the given centre.
@@ -40,8 +41,10 @@ def read_arc(
     if "via" in given and len(given) > 1:
         table.refuse(
             "via",
-            f"{table.title}: {' and '.join(given)} are too much for one arc",
-            "give one of radius, center and via",
+            _("{title}: {given} are too much for one arc").format(
+                title=table.title, given=_(" and ").join(given)
+            ),
+            _("give one of radius, center and via"),
         )
     arc = _arc_of(table, given, start, end)
     if not monotone(arc):
@@ -55,7 +58,11 @@ def _arc_of(table: Table, given: list[str], start: Point, end: Point) -> Arc:
         try:
             arc = arc_by_third(start, end, table.point("via"))
         except ValueError as error:
-            table.refuse("via", f"{table.title}: there is no such arc: {error}", "move via aside")
+            table.refuse(
+                "via",
+                _("{title}: there is no such arc: {error}").format(title=table.title, error=error),
+                _("move via aside"),
+            )
         return arc
     if "center" in given:
         return _arc_about(table, start, end, "radius" in given)
@@ -63,13 +70,19 @@ def _arc_of(table: Table, given: list[str], start: Point, end: Point) -> Arc:
     if radius == 0 or distance(start, end) < SAME:
         table.refuse(
             "radius",
-            f"{table.title}: there is no such arc: its radius or its length is 0",
-            "give a radius above 0 for a convex arc, below 0 for a concave one",
+            _("{title}: there is no such arc: its radius or its length is 0").format(
+                title=table.title
+            ),
+            _("give a radius above 0 for a convex arc, below 0 for a concave one"),
         )
     try:
         return arc_by_radius(start, end, radius)
     except ValueError as error:
-        table.refuse("radius", f"{table.title}: there is no such arc: {error}", _larger(start, end))
+        table.refuse(
+            "radius",
+            _("{title}: there is no such arc: {error}").format(title=table.title, error=error),
+            _larger(start, end),
+        )
 
 
 def _arc_about(table: Table, start: Point, end: Point, signed: bool) -> Arc:
@@ -79,9 +92,11 @@ def _arc_about(table: Table, start: Point, end: Point, signed: bool) -> Arc:
     if inner < SAME or outer - inner > OFF_CIRCLE:
         table.refuse(
             "center",
-            f"{table.title}: there is no such arc: the center is {distance(start, centre):.6g} "
-            f"from the start and {distance(end, centre):.6g} from the end",
-            "give a center as far from the start as from the end",
+            _(
+                "{title}: there is no such arc: the center is {start:.6g} from the start "
+                "and {end:.6g} from the end"
+            ).format(title=table.title, start=distance(start, centre), end=distance(end, centre)),
+            _("give a center as far from the start as from the end"),
         )
     if not signed:
         return arc_by_centre(start, end, centre)
@@ -89,8 +104,10 @@ def _arc_about(table: Table, start: Point, end: Point, signed: bool) -> Arc:
     if abs(abs(radius) - inner) > OFF_CIRCLE:
         table.refuse(
             "radius",
-            f"{table.title}: the center is {inner:.6g} from the ends, the radius says {radius:g}",
-            "give one of radius and center alone",
+            _(
+                "{title}: the center is {inner:.6g} from the ends, the radius says {radius:g}"
+            ).format(title=table.title, inner=inner, radius=radius),
+            _("give one of radius and center alone"),
         )
     return Arc(start, end, centre, radius > 0)
 
@@ -104,8 +121,10 @@ def _refuse_back(table: Table, key: str, start: Point, end: Point, arc: Arc) -> 
     )
     table.refuse(
         key,
-        f"{table.title}: the arc would run back in z, by way of {farthest}",
-        _larger(start, end) if key == "radius" else "end it where it stands upright",
+        _("{title}: the arc would run back in z, by way of {farthest}").format(
+            title=table.title, farthest=farthest
+        ),
+        _larger(start, end) if key == "radius" else _("end it where it stands upright"),
     )
 
 
@@ -113,8 +132,8 @@ def _larger(start: Point, end: Point) -> str:
     """What radius would do."""
     least = smallest_radius(start, end)
     if math.isinf(least):
-        return "give the start a larger z than the end"
-    return f"use a radius of at least {least:.6g}, or end the arc elsewhere"
+        return _("give the start a larger z than the end")
+    return _("use a radius of at least {least:.6g}, or end the arc elsewhere").format(least=least)
 
 
 def read_points(table: Table, exact: bool = False) -> tuple[Element, ...]:
@@ -134,7 +153,7 @@ def read_points(table: Table, exact: bool = False) -> tuple[Element, ...]:
     done, wrong = with_corners(elements, corners)
     for number, reason in wrong.items():
         items[number + 1].refuse(
-            "", f"{items[number + 1].title}: {reason}", "make it smaller or leave it out"
+            "", f"{items[number + 1].title}: {reason}", _("make it smaller or leave it out")
         )
     return tuple(done)
 
@@ -142,12 +161,18 @@ def read_points(table: Table, exact: bool = False) -> tuple[Element, ...]:
 def _check_step(item: Table, start: Point, end: Point) -> None:
     """Refuse a point that is where the one before is, or in front of it."""
     if distance(start, end) < SAME:
-        item.refuse("", f"{item.title}: it is where the one before is", "leave one of them out")
+        item.refuse(
+            "",
+            _("{title}: it is where the one before is").format(title=item.title),
+            _("leave one of them out"),
+        )
     if end.z > start.z + SAME:
         item.refuse(
             "z",
-            f"{item.title}: the contour runs the wrong way, from z = {start.z:g} to {end.z:g}",
-            "order the points from the free end towards the chuck",
+            _("{title}: the contour runs the wrong way, from z = {z:g} to {z2:g}").format(
+                title=item.title, z=start.z, z2=end.z
+            ),
+            _("order the points from the free end towards the chuck"),
         )
 
 
@@ -160,7 +185,7 @@ def _read_corner(
         if not inside or len(given) > 1:
             item.refuse(
                 key,
-                f"{item.title}: {key} is not possible here",
-                "give corner or chamfer, at a point between two others",
+                _("{title}: {key} is not possible here").format(title=item.title, key=key),
+                _("give corner or chamfer, at a point between two others"),
             )
         corners[number - 1] = (key, item.positive(key))

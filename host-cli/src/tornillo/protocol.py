@@ -306,7 +306,7 @@ REQUESTS = {
     Command.RESET: Struct("<"),
     Command.ZERO: Struct("<Bi"),
     Command.OVERRIDE: Struct("<B"),
-    Command.JOG: Struct("<iiH"),
+    Command.JOG: Struct("<iiHH"),
     Command.GOTO: Struct("<iiH"),
     Command.TOUCH: Struct("<ii"),
     Command.PROGRESS: Struct("<"),

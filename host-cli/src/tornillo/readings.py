@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tornillo.calibration import Ways
 from tornillo.errors import TornilloError
+from tornillo.language import _
 
 UM_PER_UNIT = {"um": 1.0, "mm": 1000.0, "inch": 25_400.0}
 
@@ -30,7 +31,8 @@ def read_ways(path: Path, units: str) -> list[Ways]:
         lines = path.read_text(encoding="utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise TornilloError(
-            f"cannot read {path}: {error}", "write a text file with two numbers a line"
+            _("cannot read {path}: {error}").format(path=path, error=error),
+            _("write a text file with two numbers a line"),
         ) from error
     found = []
     for number, line in enumerate(lines, start=1):
@@ -41,8 +43,10 @@ def read_ways(path: Path, units: str) -> list[Ways]:
             first, second = (length_um(word, units) for word in words)
         except ValueError as error:
             raise TornilloError(
-                f"{path}:{number}: {line.strip()!r} are no two lengths",
-                "write mark 1 to 2 and mark 2 to 3, like 7.468 6.757",
+                _("{path}:{number}: {line!r} are no two lengths").format(
+                    path=path, number=number, line=line.strip()
+                ),
+                _("write mark 1 to 2 and mark 2 to 3, like 7.468 6.757"),
             ) from error
         found.append(Ways(first, second))
     return found

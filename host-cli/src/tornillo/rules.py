@@ -19,6 +19,7 @@ from tornillo.image import (
     unpack_header,
     unpack_record,
 )
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.material import Material
 from tornillo.protocol import (
@@ -77,7 +78,9 @@ def check(image: PartImage, scale: Scale) -> Iterator[Violation]:
     """
     broken = list(header_rules(image.header, scale))
     if image.size > PART_IMAGE_MAX:
-        detail = f"{image.size} bytes, at most {PART_IMAGE_MAX}"
+        detail = _("{size} bytes, at most {part_image_max}").format(
+            size=image.size, part_image_max=PART_IMAGE_MAX
+        )
         yield Violation(Refusal.LENGTH, 0, -1, "operation", detail)
     yield from broken
     if any(violation.refusal is Refusal.STOCK for violation in broken):
@@ -164,16 +167,28 @@ def header_rules(header: ImageHeader, scale: Scale) -> Iterator[Violation]:
 
     machine = scale.machine
     if header.format != IMAGE_FORMAT or header.flags & ~FLAG_INCH or header.reserved:
-        yield broken(Refusal.FORMAT, "", f"format {header.format}")
+        yield broken(Refusal.FORMAT, "", _("format {format}").format(format=header.format))
     if not NAME.fullmatch(header.name):
         yield broken(Refusal.NAME, "part.name", repr(header.name.decode("latin-1")))
     if (header.step_x_nm, header.step_z_nm) != (machine.step_x_nm, machine.step_z_nm):
-        yield broken(Refusal.STEP_SIZE, "", f"{header.step_x_nm} and {header.step_z_nm} nm")
+        yield broken(
+            Refusal.STEP_SIZE,
+            "",
+            _("{step_x_nm} and {step_z_nm} nm").format(
+                step_x_nm=header.step_x_nm, step_z_nm=header.step_z_nm
+            ),
+        )
     yield from (broken(Refusal.STOCK, *found) for found in _stock(header, scale))
     if not 1 <= header.operation_count <= OPERATIONS_MAX:
-        yield broken(Refusal.OPERATION_COUNT, "operation", f"{header.operation_count} operations")
+        yield broken(
+            Refusal.OPERATION_COUNT,
+            "operation",
+            _("{operation_count} operations").format(operation_count=header.operation_count),
+        )
     if not 1 <= header.retract <= RETRACT_MAX:
-        yield broken(Refusal.RETRACT, "cut.retract", f"{header.retract} steps")
+        yield broken(
+            Refusal.RETRACT, "cut.retract", _("{retract} steps").format(retract=header.retract)
+        )
     yield from (broken(Refusal.OUTSIDE_TRAVEL, *found) for found in _clear(header, scale, 0, 0))
 
 
@@ -182,9 +197,19 @@ def _stock(header: ImageHeader, scale: Scale) -> Iterator[tuple[str, str]]:
     if not 1 <= header.stock_radius <= POSITION_MAX:
         yield "stock.diameter", scale.show_diameter(header.stock_radius)
     if not 1 <= header.stock_length <= POSITION_MAX:
-        yield "stock.length", f"length {scale.show(scale.length(header.stock_length))}"
+        yield (
+            "stock.length",
+            _("length {stock_length}").format(
+                stock_length=scale.show(scale.length(header.stock_length))
+            ),
+        )
     if not 0 <= header.stock_front <= STOCK_FRONT_MAX:
-        yield "stock.allowance", f"allowance {scale.show(scale.length(header.stock_front))}"
+        yield (
+            "stock.allowance",
+            _("allowance {stock_front}").format(
+                stock_front=scale.show(scale.length(header.stock_front))
+            ),
+        )
 
 
 def _clear(
@@ -198,54 +223,78 @@ def _clear(
     if need_x > room_x:
         yield (
             "stock.diameter",
-            f"clear of the stock means {scale.show_diameter(need_x)}, "
-            f"the slide ends at {scale.show_diameter(room_x)}",
+            _("clear of the stock means {need_x}, the slide ends at {room_x}").format(
+                need_x=scale.show_diameter(need_x), room_x=scale.show_diameter(room_x)
+            ),
         )
     if need_z > room_z:
         yield (
             "stock.allowance",
-            f"clear of the stock means {scale.show_z(need_z)}, "
-            f"the slide ends at {scale.show_z(room_z)}",
+            _("clear of the stock means {need_z}, the slide ends at {room_z}").format(
+                need_z=scale.show_z(need_z), room_z=scale.show_z(room_z)
+            ),
         )
 
 
 def _tool_rules(tool: ToolRecord, header: ImageHeader, scale: Scale) -> Iterator[Found]:
     """The rules of TOOL."""
     if not 0 <= tool.kind <= TOOL_KIND_MAX:
-        yield Found(Refusal.FORMAT, "tool", f"tool number {tool.kind}")
+        yield Found(Refusal.FORMAT, "tool", _("tool number {kind}").format(kind=tool.kind))
     if tool.width > WIDTH_MAX:
-        yield Found(Refusal.FORMAT, "width", f"{tool.width} steps, at most {WIDTH_MAX}")
+        yield Found(
+            Refusal.FORMAT,
+            "width",
+            _("{width} steps, at most {width_max}").format(width=tool.width, width_max=WIDTH_MAX),
+        )
     if tool.below > WIDTH_MAX:
-        yield Found(Refusal.FORMAT, "nose_radius", f"{tool.below} steps, at most {WIDTH_MAX}")
+        yield Found(
+            Refusal.FORMAT,
+            "nose_radius",
+            _("{below} steps, at most {width_max}").format(below=tool.below, width_max=WIDTH_MAX),
+        )
     zeros = scale.machine.zero_x + tool.offset_x, scale.machine.zero_z + tool.offset_z
     if not all(-POSITION_MAX <= zero <= 0 for zero in zeros):
-        yield Found(Refusal.OUTSIDE_TRAVEL, "offset", f"part zero {zeros} steps from the switches")
+        yield Found(
+            Refusal.OUTSIDE_TRAVEL,
+            "offset",
+            _("part zero {zeros} steps from the switches").format(zeros=zeros),
+        )
     elif tool.offset_x or tool.offset_z:
-        for _, detail in _clear(header, scale, tool.offset_x, tool.offset_z):
+        for _key, detail in _clear(header, scale, tool.offset_x, tool.offset_z):
             yield Found(Refusal.OUTSIDE_TRAVEL, "offset", detail)
 
 
 def _pause_rules(record: PauseRecord) -> Iterator[Found]:
     """The rules of PAUSE."""
     if not 0 <= record.kind <= PAUSE_KIND_MAX:
-        yield Found(Refusal.FORMAT, "message", f"kind {record.kind}")
+        yield Found(Refusal.FORMAT, "message", _("kind {kind}").format(kind=record.kind))
 
 
 def _cut_rules(cut: CutRecord, header: ImageHeader, scale: Scale) -> Iterator[Found]:
     """The rules of CUT."""
     if not 0 <= cut.kind <= SPRING_MAX:
-        yield Found(Refusal.FORMAT, "spring_passes", f"{cut.kind} spring passes")
+        yield Found(
+            Refusal.FORMAT, "spring_passes", _("{kind} spring passes").format(kind=cut.kind)
+        )
     if not 1 <= cut.depth_of_cut <= header.stock_radius:
-        detail = f"{cut.depth_of_cut} steps, the stock has {header.stock_radius}"
+        detail = _("{depth_of_cut} steps, the stock has {stock_radius}").format(
+            depth_of_cut=cut.depth_of_cut, stock_radius=header.stock_radius
+        )
         yield Found(Refusal.DEPTH_OF_CUT, "depth_of_cut", detail)
     if cut.finish_allowance > cut.depth_of_cut:
-        detail = f"{cut.finish_allowance} steps, the depth of cut is {cut.depth_of_cut}"
+        detail = _("{finish_allowance} steps, the depth of cut is {depth_of_cut}").format(
+            finish_allowance=cut.finish_allowance, depth_of_cut=cut.depth_of_cut
+        )
         yield Found(Refusal.ALLOWANCE, "finish_allowance", detail)
     fastest = min(scale.machine.max_rate * FEED_UNIT, FIELD_MAX)
     for key, feed in (("feed", cut.feed), ("finish_feed", cut.finish_feed)):
         if not FEED_MIN <= feed <= fastest:
-            feed_range = f"{scale.show_feed(FEED_MIN)} to {scale.show_feed(fastest)}"
-            detail = f"{scale.show_feed(feed)}, the machine feeds {feed_range}"
+            feed_range = _("{feed_min} to {fastest}").format(
+                feed_min=scale.show_feed(FEED_MIN), fastest=scale.show_feed(fastest)
+            )
+            detail = _("{feed}, the machine feeds {feed_range}").format(
+                feed=scale.show_feed(feed), feed_range=feed_range
+            )
             yield Found(Refusal.FEED, key, detail)
     yield from _spindle(cut.spindle, scale.machine)
 
@@ -256,5 +305,7 @@ def _spindle(speed: int, machine: Machine) -> Iterator[Found]:
     if not speed or slowest is None or fastest is None:
         return
     if not slowest <= speed <= fastest:
-        detail = f"{speed} rev/min, the machine turns {slowest} to {fastest}"
+        detail = _("{speed} rev/min, the machine turns {slowest} to {fastest}").format(
+            speed=speed, slowest=slowest, fastest=fastest
+        )
         yield Found(Refusal.SPINDLE, "spindle", detail)

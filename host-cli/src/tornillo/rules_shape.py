@@ -6,6 +6,7 @@ from math import atan, degrees, isqrt
 from typing import NamedTuple
 
 from tornillo.image import CENTRE_UNIT, Segment, SegmentKind, unpack_segments
+from tornillo.language import _
 from tornillo.material import (
     Chain,
     Material,
@@ -66,31 +67,33 @@ class Ground(NamedTuple):
         header, scale = self.header, self.scale
         if x < -self.tool.below or x > header.stock_radius:
             limit = scale.show_diameter(header.stock_radius)
-            detail = f"{scale.show_diameter(x)}, the stock has {limit}"
+            detail = _("{x}, the stock has {limit}").format(x=scale.show_diameter(x), limit=limit)
             yield Found(Refusal.OUTSIDE_STOCK, f"{at}.x", detail)
         if z < self.nearest:
-            detail = (
-                f"{scale.show_z(z)}, one retract in front of the chuck is "
-                f"{scale.show_z(self.nearest)}"
+            detail = _("{z}, one retract in front of the chuck is {nearest}").format(
+                z=scale.show_z(z), nearest=scale.show_z(self.nearest)
             )
             yield Found(Refusal.OUTSIDE_STOCK, f"{at}.z", detail)
         machine = scale.machine
         least_x = -machine.travel_x - machine.zero_x - self.tool.offset_x
         least_z = -machine.travel_z - machine.zero_z - self.tool.offset_z
         if x < least_x:
-            detail = f"{scale.show_diameter(x)}, the slide ends at {scale.show_diameter(least_x)}"
+            detail = _("{x}, the slide ends at {least_x}").format(
+                x=scale.show_diameter(x), least_x=scale.show_diameter(least_x)
+            )
             yield Found(Refusal.OUTSIDE_TRAVEL, f"{at}.x", detail)
         if z < least_z:
-            detail = f"{scale.show_z(z)}, the slide ends at {scale.show_z(least_z)}"
+            detail = _("{z}, the slide ends at {least_z}").format(
+                z=scale.show_z(z), least_z=scale.show_z(least_z)
+            )
             yield Found(Refusal.OUTSIDE_TRAVEL, f"{at}.z", detail)
 
     def in_front(self, z: int, at: str) -> Iterator[Found]:
         """The rule of places in front of the part."""
         if z > self.foremost:
             scale = self.scale
-            detail = (
-                f"{scale.show_z(z)}, one retract in front of the stock is "
-                f"{scale.show_z(self.foremost)}"
+            detail = _("{z}, one retract in front of the stock is {foremost}").format(
+                z=scale.show_z(z), foremost=scale.show_z(self.foremost)
             )
             yield Found(Refusal.OUTSIDE_STOCK, f"{at}.z", detail)
 
@@ -114,9 +117,9 @@ def _contour_rules(
     """
     kind, known = record.kind & CONTOUR_KIND, CONTOUR_KIND | CONTOUR_FACING
     if kind > CONTOUR_KIND_MAX or record.kind & ~known:
-        yield Found(Refusal.FORMAT, "", f"kind {record.kind}")
+        yield Found(Refusal.FORMAT, "", _("kind {kind}").format(kind=record.kind))
     if ground.tool.width:
-        yield Found(Refusal.TOOL, "tool", "a tool with a width cuts grooves only")
+        yield Found(Refusal.TOOL, "tool", _("a tool with a width cuts grooves only"))
     yield from _start_rules(record, ground)
     facing = bool(record.kind & CONTOUR_FACING)
     z, x = record.z, record.x
@@ -128,7 +131,7 @@ def _contour_rules(
     except ValueError as error:
         yield Found(Refusal.OPERATION_SIZE, "", str(error))
     if not segments:
-        yield Found(Refusal.OPERATION_SIZE, "", "no segment")
+        yield Found(Refusal.OPERATION_SIZE, "", _("no segment"))
     yield from _chain_rules(chain_of(record.z, record.x, segments, facing), ground)
 
 
@@ -150,17 +153,23 @@ def _segment_rules(
     scale = ground.scale
     here = f"{scale.show_z(z)}, {scale.show_diameter(x)}"
     if segment.dz > 0 or (facing and segment.dx < 0):
-        way = "z grows" if segment.dz > 0 else "the diameter gets smaller"
-        yield Found(Refusal.DIRECTION, "end.z", f"{way} behind {here}")
+        way = _("z grows") if segment.dz > 0 else _("the diameter gets smaller")
+        yield Found(Refusal.DIRECTION, "end.z", _("{way} behind {here}").format(way=way, here=here))
     if segment.dz == 0 and segment.dx == 0:
-        yield Found(Refusal.EMPTY_CUT, "end.z", f"a piece without length at {here}")
+        yield Found(
+            Refusal.EMPTY_CUT, "end.z", _("a piece without length at {here}").format(here=here)
+        )
     yield from _in_order([*ground.outside(z + segment.dz, x + segment.dx, "end")])
     subs = pieces(z, x, segment)
     if segment.kind is not SegmentKind.LINE:
         if not arc_exists(segment):
-            yield Found(Refusal.ARC, "end.x", f"from {here}")
+            yield Found(Refusal.ARC, "end.x", _("from {here}").format(here=here))
         if len(subs) > 1 and facing:
-            yield Found(Refusal.DIRECTION, "end.z", f"the diameter gets smaller behind {here}")
+            yield Found(
+                Refusal.DIRECTION,
+                "end.z",
+                _("the diameter gets smaller behind {here}").format(here=here),
+            )
         if len(subs) > 1:
             apex = subs[0].xe - (segment.kind is SegmentKind.CONVEX)
             yield from _in_order([*ground.outside(subs[0].ze, apex, "end")])
@@ -216,12 +225,20 @@ def _edge_rules(segment: Segment, subs: tuple[Sub, ...], ground: Ground) -> Iter
             continue
         angle = degrees(atan(climb / run)) if run else 90.0
         follows = degrees(atan(limit / SLOPE_UNIT))
-        way = "falls" if falling else "rises"
+        way = _("falls") if falling else _("rises")
         yield Found(
             Refusal.BACK_EDGE if falling else Refusal.FRONT_EDGE,
             "end.x",
-            f"between {scale.show_z(subs[0].zs)} and {scale.show_z(subs[-1].ze)} the contour "
-            f"{way} with {angle:.1f} degrees, the tool follows {follows:.1f}",
+            _(
+                "between {zs} and {ze} the contour {way} with {angle:.1f} degrees, the "
+                "tool follows {follows:.1f}"
+            ).format(
+                zs=scale.show_z(subs[0].zs),
+                ze=scale.show_z(subs[-1].ze),
+                way=way,
+                angle=angle,
+                follows=follows,
+            ),
         )
 
 
@@ -231,19 +248,20 @@ def _chain_rules(chain: Chain, ground: Ground) -> Iterator[Found]:
     if chain.facing:
         if chain.z_end >= header.stock_front:
             front = scale.show_z(header.stock_front)
-            detail = f"{scale.show_z(chain.z_end)}, the stock begins at {front}"
+            detail = _("{z_end}, the stock begins at {front}").format(
+                z_end=scale.show_z(chain.z_end), front=front
+            )
             yield Found(Refusal.EMPTY_CUT, "end.z", detail)
         return
     if chain.z_end == chain.z:
-        detail = f"it starts and ends at {scale.show_z(chain.z)}"
+        detail = _("it starts and ends at {z}").format(z=scale.show_z(chain.z))
         yield Found(Refusal.EMPTY_CUT, "end.z", detail)
     if chain.lowest >= header.stock_radius:
-        detail = f"{scale.show_diameter(chain.lowest)} is that of the stock"
+        detail = _("{lowest} is that of the stock").format(lowest=scale.show_diameter(chain.lowest))
         yield Found(Refusal.EMPTY_CUT, "end.x", detail)
     if ground.tool.back != SLOPE_ANY and (ground.material.free_end(chain.x, chain.z + 1) > chain.z):
-        detail = (
-            f"starts at {scale.show_z(chain.z)}, and in front of it something larger than "
-            f"{scale.show_diameter(chain.x)} stands"
+        detail = _("starts at {z}, and in front of it something larger than {x} stands").format(
+            z=scale.show_z(chain.z), x=scale.show_diameter(chain.x)
         )
         yield Found(Refusal.BLOCKED, "start.z", detail)
 
@@ -260,9 +278,9 @@ def _plunge_rules(record: PlungeRecord, ground: Ground) -> Iterator[Found]:
     """All rules of a plunge, in the chip's order."""
     scale = ground.scale
     if not 0 <= record.kind <= PLUNGE_KIND_MAX:
-        yield Found(Refusal.FORMAT, "", f"kind {record.kind}")
+        yield Found(Refusal.FORMAT, "", _("kind {kind}").format(kind=record.kind))
     if not ground.tool.width:
-        yield Found(Refusal.TOOL, "tool", "a tool without a width cannot cut straight in")
+        yield Found(Refusal.TOOL, "tool", _("a tool without a width cannot cut straight in"))
     yield from _in_order(
         [
             *ground.in_front(record.z_high + ground.tool.width, "start"),
@@ -271,6 +289,12 @@ def _plunge_rules(record: PlungeRecord, ground: Ground) -> Iterator[Found]:
     )
     if record.z_low > record.z_high:
         room = scale.show(scale.length(record.z_high - record.z_low))
-        yield Found(Refusal.EMPTY_CUT, "end.z", f"narrower than the tool by {room}")
+        yield Found(
+            Refusal.EMPTY_CUT, "end.z", _("narrower than the tool by {room}").format(room=room)
+        )
     if record.x >= ground.header.stock_radius:
-        yield Found(Refusal.EMPTY_CUT, "end.x", f"{scale.show_diameter(record.x)} is not smaller")
+        yield Found(
+            Refusal.EMPTY_CUT,
+            "end.x",
+            _("{x} is not smaller").format(x=scale.show_diameter(record.x)),
+        )

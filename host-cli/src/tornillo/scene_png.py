@@ -4,6 +4,7 @@
 from pathlib import Path
 
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.scene import Area, Line, Scene
 
 MM_PER_INCH = 25.4
@@ -24,8 +25,8 @@ def save_png(scene: Scene, path: Path) -> None:
         from matplotlib.patches import Polygon
     except ImportError as error:
         raise TornilloError(
-            "PNG pictures need matplotlib",
-            'install it with `pip install "tornillo[draw]"`, or write an .svg',
+            _("PNG pictures need matplotlib"),
+            _('install it with `pip install "tornillo[draw]"`, or write an .svg'),
         ) from error
     figure = Figure(figsize=(scene.width / MM_PER_INCH, scene.height / MM_PER_INCH), dpi=DPI)
     FigureCanvasAgg(figure)

@@ -4,6 +4,7 @@
 import difflib
 
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.protocol import SETTINGS, Setting, SettingGetData, SettingId
 
 BY_ID: dict[SettingId, Setting] = {entry.id: entry for entry in SETTINGS}
@@ -14,14 +15,18 @@ def named(name: str) -> Setting:
     """The setting called `name`; raises TornilloError with the nearest name."""
     known = name.lower()
     if known not in BY_NAME:
-        raise TornilloError(f'there is no setting "{name}"', nearest(known))
+        raise TornilloError(_('there is no setting "{name}"').format(name=name), nearest(known))
     return BY_NAME[known]
 
 
 def nearest(name: str) -> str:
     """A question for the setting that was meant by `name`."""
     close = difflib.get_close_matches(name, BY_NAME, n=1)
-    return f'did you mean "{close[0]}"?' if close else "see `tornillo settings`"
+    return (
+        _('did you mean "{close}"?').format(close=close[0])
+        if close
+        else _("see `tornillo settings`")
+    )
 
 
 def amount(setting: Setting, value: int) -> str:
@@ -32,7 +37,7 @@ def amount(setting: Setting, value: int) -> str:
 def span(setting: Setting, told: SettingGetData | None = None) -> str:
     """The range of a setting with its unit, as the chip tells it or else as the protocol does."""
     low, high = (told.minimum, told.maximum) if told else (setting.minimum, setting.maximum)
-    return f"{low} to {amount(setting, high)}"
+    return _("{low} to {setting}").format(low=low, setting=amount(setting, high))
 
 
 def explained(setting: Setting, told: SettingGetData | None = None) -> str:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from tornillo.errors import ChipError, LinkError, TornilloError
+from tornillo.language import _
 from tornillo.lathe import Lathe
 from tornillo.protocol import Setting, SettingId
 from tornillo.setting_names import BY_ID, amount, span
@@ -23,7 +24,12 @@ class Change:
     def __str__(self) -> str:
         """The change in words, with unit and range."""
         name = self.setting.id.name.lower()
-        return f"{name} was {self.old}, is {amount(self.setting, self.new)} ({span(self.setting)})"
+        return _("{name} was {old}, is {setting} ({setting2})").format(
+            name=name,
+            old=self.old,
+            setting=amount(self.setting, self.new),
+            setting2=span(self.setting),
+        )
 
 
 def store(lathe: Lathe, setting: Setting, value: int) -> Change:
@@ -35,14 +41,23 @@ def store(lathe: Lathe, setting: Setting, value: int) -> Change:
     name = setting.id.name.lower()
     if not told.minimum <= value <= told.maximum:
         raise TornilloError(
-            f"{name} cannot be {amount(setting, value)}: it goes from {span(setting, told)}",
-            f"choose a value in this range; now it is {amount(setting, told.value)}",
+            _("{name} cannot be {setting}: it goes from {setting2}").format(
+                name=name, setting=amount(setting, value), setting2=span(setting, told)
+            ),
+            _("choose a value in this range; now it is {setting}").format(
+                setting=amount(setting, told.value)
+            ),
         )
     try:
         lathe.set_setting(setting.id, value)
     except ChipError as error:
         raise TornilloError(
-            f"{name} stays {amount(setting, told.value)} ({span(setting, told)}): {error}",
+            _("{name} stays {setting} ({setting2}): {error}").format(
+                name=name,
+                setting=amount(setting, told.value),
+                setting2=span(setting, told),
+                error=error,
+            ),
             error.remedy,
         ) from error
     return Change(setting, told.value, value)
@@ -62,9 +77,12 @@ def store_all(
         if not now.minimum <= value <= now.maximum:
             entry = BY_ID[setting]
             raise TornilloError(
-                f"{setting.name.lower()} cannot be {amount(entry, value)}: it goes from "
-                f"{span(entry, now)}; nothing was changed",
-                "correct the file; it may belong to another version of the firmware",
+                _("{setting} cannot be {entry}: it goes from {entry2}; nothing was changed").format(
+                    setting=setting.name.lower(),
+                    entry=amount(entry, value),
+                    entry2=span(entry, now),
+                ),
+                _("correct the file; it may belong to another version of the firmware"),
             )
     due = [setting for setting, value in values.items() if told[setting].value != value]
     changes: list[Change] = []
@@ -73,15 +91,20 @@ def store_all(
             changes.append(store(lathe, BY_ID[setting], values[setting]))
         except TornilloError as error:
             raise TornilloError(
-                f"{error}; {len(changes)} of {len(due)} changes are stored", error.remedy
+                _("{error}; {changes} of {due} changes are stored").format(
+                    error=error, changes=len(changes), due=len(due)
+                ),
+                error.remedy,
             ) from error
         tell(changes[-1])
     for change in changes:
         kept = lathe.setting(change.setting.id).value
         if kept != change.new:
             raise LinkError(
-                f"{change.setting.id.name.lower()} is {kept} in the lathe, not {change.new}",
-                "load the file again; if it stays, the chip's memory is worn out",
+                _("{id} is {kept} in the lathe, not {new}").format(
+                    id=change.setting.id.name.lower(), kept=kept, new=change.new
+                ),
+                _("load the file again; if it stays, the chip's memory is worn out"),
             )
     return changes
 

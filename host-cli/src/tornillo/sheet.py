@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from tornillo.contour import Line
 from tornillo.dimensioning import show
+from tornillo.language import _, later, plural
 from tornillo.operations import Contour, Operation, Pause, Plunge
 from tornillo.part import Part
 from tornillo.plan_report import OperationSummary, PlanReport, show_time
@@ -13,6 +14,13 @@ from tornillo.scene import Pen, Point, Scene, Text
 from tornillo.tool_picture import draw_angles, draw_tool
 from tornillo.tools import Tool
 from tornillo.view import View
+
+#: What a tool's hand is called.
+HANDS = {
+    "right": later("right hand"),
+    "left": later("left hand"),
+    later("neutral"): later("neutral"),
+}
 
 SHEET = (297.0, 210.0)
 FRAME: tuple[Point, Point] = ((8.0, 8.0), (289.0, 202.0))
@@ -62,7 +70,7 @@ def _shortened(text: str, room: float, size: float) -> str:
 def _operations(scene: Scene, report: PlanReport) -> None:
     """What is cut, in order, with passes and time."""
     left, right = FRAME[0][0] + 3, TOOLS_BLOCK - 2.5
-    _heading(scene, left, f"Operations ({report.part.units})")
+    _heading(scene, left, _("Operations ({units})").format(units=report.part.units))
     summaries = list(report.operations())
     shown = summaries if len(summaries) <= ROWS else summaries[: ROWS - 1]
     for row, summary in enumerate(shown):
@@ -75,15 +83,22 @@ def _operations(scene: Scene, report: PlanReport) -> None:
         scene.text(Text((right, y), effort, SMALL, "end", color=GREY))
     if len(shown) < len(summaries):
         y = TITLE_TOP - 10.5 - len(shown) * ROW
-        scene.text(Text((left, y), f"    and {len(summaries) - len(shown)} more", SMALL))
+        scene.text(
+            Text(
+                (left, y),
+                _("    and {summaries} more").format(summaries=len(summaries) - len(shown)),
+                SMALL,
+            )
+        )
 
 
 def _effort(summary: OperationSummary) -> str:
     """Passes and time."""
     if not summary.tool:
-        return "RUN goes on"
-    noun = "pass" if summary.passes == 1 else "passes"
-    return f"{summary.passes} {noun}, {show_time(summary.seconds)}"
+        return _("RUN goes on")
+    count = summary.passes
+    passes = plural("{count} pass", "{count} passes", count).format(count=count)
+    return f"{passes}, {show_time(summary.seconds)}"
 
 
 def place_of(operation: Operation) -> str:
@@ -94,16 +109,20 @@ def place_of(operation: Operation) -> str:
     if isinstance(shape, Plunge):
         z = _number(shape.front)
         if shape.front != shape.back:
-            z = f"{z} to {_number(shape.back)}"
+            z = _("{z} to {back}").format(z=z, back=_number(shape.back))
         return f"z {z}, Ø{_number(shape.diameter)}"
     assert isinstance(shape, Contour)
     first, last = shape.elements[0].start, shape.elements[-1].end
     if operation.type == "face":
-        return f"z {_number(first.z)}, to Ø{_number(2 * first.x)}"
+        return _("z {z}, to Ø{number}").format(z=_number(first.z), number=_number(2 * first.x))
     if operation.type == "cylinder" and isinstance(shape.elements[0], Line):
-        return f"z {_number(first.z)} to {_number(last.z)}, Ø{_number(2 * first.x)}"
-    ends = f"Ø{_number(2 * first.x)} to Ø{_number(2 * last.x)}"
-    return f"z {_number(first.z)} to {_number(last.z)}, {ends}"
+        return _("z {z} to {z2}, Ø{number}").format(
+            z=_number(first.z), z2=_number(last.z), number=_number(2 * first.x)
+        )
+    ends = _("Ø{number} to Ø{number2}").format(
+        number=_number(2 * first.x), number2=_number(2 * last.x)
+    )
+    return _("z {z} to {z2}, {ends}").format(z=_number(first.z), z2=_number(last.z), ends=ends)
 
 
 def _used(part: Part) -> Iterator[Tool]:
@@ -119,7 +138,7 @@ def _tools(scene: Scene, part: Part, view: View) -> None:
     """Each tool with its edges, at the scale of the part as far as the block has room."""
     left = TOOLS_BLOCK + 3
     tools = list(_used(part))
-    _heading(scene, left, "Tools" if len(tools) > 1 else "Tool")
+    _heading(scene, left, _("Tools") if len(tools) > 1 else _("Tool"))
     pitch = (LEGEND_BLOCK - TOOLS_BLOCK - 4) / TOOLS_SHOWN
     for column, tool in enumerate(tools[:TOOLS_SHOWN]):
         x = left + column * pitch
@@ -135,7 +154,7 @@ def _tools(scene: Scene, part: Part, view: View) -> None:
             scene.text(Text((x, y), line, 2.4, bold=row == 0))
     if len(tools) > TOOLS_SHOWN:
         names = ", ".join(tool.name for tool in tools[TOOLS_SHOWN:])
-        text = _shortened(f"and {names}", LEGEND_BLOCK - left - 2, 2.4)
+        text = _shortened(_("and {names}").format(names=names), LEGEND_BLOCK - left - 2, 2.4)
         scene.text(Text((left, FRAME[0][1] + 2.4), text, 2.4))
 
 
@@ -143,21 +162,28 @@ def tool_lines(part: Part, tool: Tool) -> list[str]:
     """Name and sizes of a tool in words."""
     sizes = []
     if tool.width:
-        sizes.append(f"width {show(part, tool.width)}")
+        sizes.append(_("width {width}").format(width=show(part, tool.width)))
     else:
-        sizes.append(f"{tool.hand} hand" if tool.hand != "neutral" else "neutral")
-        sizes += [f"front {tool.front_clearance:g}°", f"back {tool.back_clearance:g}°"]
+        sizes.append(_(HANDS[tool.hand]))
+        sizes += [
+            _("front {front_clearance:g}°").format(front_clearance=tool.front_clearance),
+            _("back {back_clearance:g}°").format(back_clearance=tool.back_clearance),
+        ]
     if tool.nose_radius:
-        sizes.append(f"nose R{show(part, tool.nose_radius)}")
+        sizes.append(_("nose R{nose_radius}").format(nose_radius=show(part, tool.nose_radius)))
     if tool.offset_z or tool.offset_x:
-        sizes.append(f"off z {_number(tool.offset_z)}, Ø {_number(2 * tool.offset_x)}")
+        sizes.append(
+            _("off z {offset_z}, Ø {number}").format(
+                offset_z=_number(tool.offset_z), number=_number(2 * tool.offset_x)
+            )
+        )
     return [tool.name, *sizes]
 
 
 def _legend(scene: Scene, legend: Sequence[Legend]) -> None:
     """What the lines mean."""
     left = LEGEND_BLOCK + 2.5
-    _heading(scene, left, "Legend")
+    _heading(scene, left, _("Legend"))
     for row, entry in enumerate(legend):
         y = TITLE_TOP - 10.5 - row * ROW
         if entry.pen is not None:
@@ -165,8 +191,8 @@ def _legend(scene: Scene, legend: Sequence[Legend]) -> None:
         else:
             low, high = (left, y - 1.4), (left + 7, y + 1.4)
             scene.area(entry.fill, low, (high[0], low[1]), high, (low[0], high[1]))
-        scene.text(Text((left + 8.5, y), entry.text, 2.4))
-    for row, note in enumerate(("zero: front face, axis", "lengths from zero")):
+        scene.text(Text((left + 8.5, y), _(entry.text), 2.4))
+    for row, note in enumerate((_("zero: front face, axis"), _("lengths from zero"))):
         y = TITLE_TOP - 12.5 - (len(legend) + row) * ROW
         scene.text(Text((left, y), note, 2.4, color=GREY))
 
@@ -178,20 +204,51 @@ def _title(scene: Scene, report: PlanReport, view: View) -> None:
     scene.text(Text((left, TITLE_TOP - 6.5), part.name, LARGE, bold=True))
     factor = view.factor
     scale = f"{factor:.3g}:1" if factor >= 1 else f"1:{1 / factor:.3g}"
-    allowance = f" + {show(part, part.stock.allowance)} raw" if part.stock.allowance else ""
+    allowance = (
+        _(" + {allowance} raw").format(allowance=show(part, part.stock.allowance))
+        if part.stock.allowance
+        else ""
+    )
     cut = part.cut
-    spring = f", {cut.spring_passes} spring" if cut.spring_passes else ""
+    spring = (
+        _(", {spring_passes} spring").format(spring_passes=cut.spring_passes)
+        if cut.spring_passes
+        else ""
+    )
     stock = f"Ø{show(part, part.stock.diameter)} x {show(part, part.stock.length)}{allowance}"
-    share = f"{report.timing.share:.0%} in the cut"
+    share = _("{share:.0%} in the cut").format(share=report.timing.share)
     rows = (
-        ("stock", f"{stock} {units}"),
-        ("depth of cut", f"{_number(cut.depth_of_cut)} {units}, retract {_number(cut.retract)}"),
-        ("finish", f"{_number(cut.finish_allowance)} {units} left{spring}"),
-        ("feed", f"{_number(cut.feed)} {units}/min, finish {_number(cut.finish_feed)}"),
-        ("spindle", _spindle(part)),
-        ("time", f"about {show_time(report.timing.total)}, {share}"),
-        ("machine", f"{report.scale.machine.name}, step {_step(report)}"),
-        ("scale", f"{scale} on A4, {units}"),
+        (_("stock"), f"{stock} {units}"),
+        (
+            _("depth of cut"),
+            _("{depth_of_cut} {units}, retract {retract}").format(
+                depth_of_cut=_number(cut.depth_of_cut), units=units, retract=_number(cut.retract)
+            ),
+        ),
+        (
+            _("finish"),
+            _("{finish_allowance} {units} left{spring}").format(
+                finish_allowance=_number(cut.finish_allowance), units=units, spring=spring
+            ),
+        ),
+        (
+            _("feed"),
+            _("{feed} {units}/min, finish {finish_feed}").format(
+                feed=_number(cut.feed), units=units, finish_feed=_number(cut.finish_feed)
+            ),
+        ),
+        (_("spindle"), _spindle(part)),
+        (
+            _("time"),
+            _("about {total}, {share}").format(total=show_time(report.timing.total), share=share),
+        ),
+        (
+            _("machine"),
+            _("{machine}, step {report}").format(
+                machine=report.scale.machine.name, report=_step(report)
+            ),
+        ),
+        (_("scale"), _("{scale} on A4, {units}").format(scale=scale, units=units)),
     )
     for row, (name, value) in enumerate(rows):
         y = TITLE_TOP - 14.0 - row * ROW
@@ -220,4 +277,6 @@ def _spindle(part: Part) -> str:
         speed = operation.cut.spindle
         if speed and speed not in speeds and not isinstance(operation.shape, Pause):
             speeds.append(speed)
-    return f"{', '.join(map(str, speeds))} rev/min" if speeds else "no advice"
+    return (
+        _("{list} rev/min").format(list=", ".join(map(str, speeds))) if speeds else _("no advice")
+    )

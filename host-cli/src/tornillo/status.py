@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 from tornillo.errors import AlarmError, LinkError
+from tornillo.language import _
 from tornillo.protocol import (
     PERMILLE_DONE,
     SLOT_NONE,
@@ -82,8 +83,10 @@ class Status:
             axis = Axis(detail) if alarm in AXIS_ALARMS else None
         except ValueError as error:
             raise LinkError(
-                f"the status of the lathe is unknown to this tornillo: {error}",
-                "use the tornillo version that belongs to this firmware",
+                _("the status of the lathe is unknown to this tornillo: {error}").format(
+                    error=error
+                ),
+                _("use the tornillo version that belongs to this firmware"),
             ) from error
         values["alarm"] = alarm
         values["flags"] = StatusFlag(data.flags)
@@ -126,10 +129,19 @@ class Status:
     def advice(self) -> list[str]:
         """The warnings in words, each with what to do about it."""
         texts = [WARNING_TEXTS[warning] for warning in MachineWarning if warning in self.warnings]
-        return [f"{text.cause}; {text.remedy}" for text in texts]
+        return [f"{_(text.cause)}; {_(text.remedy)}" for text in texts]
 
     def alarm_error(self) -> AlarmError:
         """The alarm in words, with what to do about it."""
         text = ALARM_TEXTS[self.alarm]
-        axis = f" of {self.alarm_axis.name}" if self.alarm_axis is not None else ""
-        return AlarmError(f"alarm {self.alarm.name}{axis}: {text.cause}", text.remedy)
+        axis = (
+            _(" of {alarm_axis}").format(alarm_axis=self.alarm_axis.name)
+            if self.alarm_axis is not None
+            else ""
+        )
+        return AlarmError(
+            _("alarm {alarm}{axis}: {cause}").format(
+                alarm=self.alarm.name, axis=axis, cause=_(text.cause)
+            ),
+            _(text.remedy),
+        )

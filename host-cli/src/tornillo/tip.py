@@ -9,6 +9,7 @@ from tornillo.contour import SAME, Element, Line, Point, intersections
 from tornillo.corners import joined
 from tornillo.edges import remedy, too_steep
 from tornillo.finished import Around
+from tornillo.language import _
 from tornillo.nose import NoseError, largest_nose, tip_path
 from tornillo.operations import Contour, Operation
 from tornillo.protocol import Refusal
@@ -51,10 +52,17 @@ def edge_faults(operation: Operation, scale: Scale) -> list[Fault]:
     found: list[Fault] = []
     for steep in too_steep(operation.shape.elements, operation.tool):
         text = REFUSAL_TEXTS[Refusal.BACK_EDGE if steep.falls else Refusal.FRONT_EDGE]
-        way = "falls" if steep.falls else "rises"
-        message = (
-            f"{text.cause} at {show(steep.at, scale)}: the contour {way} with {steep.angle:.1f} "
-            f'degrees, the tool "{operation.tool.name}" follows {steep.follows:.1f}'
+        way = _("falls") if steep.falls else _("rises")
+        message = _(
+            "{cause} at {scale}: the contour {way} with {angle:.1f} degrees, the tool "
+            '"{tool}" follows {follows:.1f}'
+        ).format(
+            cause=_(text.cause),
+            scale=show(steep.at, scale),
+            way=way,
+            angle=steep.angle,
+            tool=operation.tool.name,
+            follows=steep.follows,
         )
         found.append(fault(operation, steep.place, message, remedy(steep, operation.tool)))
     return found
@@ -62,7 +70,7 @@ def edge_faults(operation: Operation, scale: Scale) -> list[Fault]:
 
 def show(at: Point, scale: Scale) -> str:
     """A place in words."""
-    return f"z = {scale.show(at.z)}, diameter {scale.show(2 * at.x)}"
+    return _("z = {z}, diameter {show}").format(z=scale.show(at.z), show=scale.show(2 * at.x))
 
 
 def tip_of(
@@ -79,13 +87,14 @@ def tip_of(
         path = tip_path(contour, nose, fine, around.before, around.after)
     except NoseError as error:
         best = largest_nose(contour, nose, fine, around.before, around.after)
-        message = (
-            f'the nose of the tool "{operation.tool.name}" (radius {nose:g}) does not fit at '
-            f"{show(error.at, scale)}: {error}"
-        )
+        message = _(
+            'the nose of the tool "{tool}" (radius {nose:g}) does not fit at {scale}: {error}'
+        ).format(tool=operation.tool.name, nose=nose, scale=show(error.at, scale), error=error)
         digits = 10.0 ** -(3 + (scale.units == "inch"))
         fitting = math.floor(best / digits + 1e-6) * digits
-        way = f"use a nose radius of at most {fitting:g}, or a larger radius or piece there"
+        way = _(
+            "use a nose radius of at most {fitting:g}, or a larger radius or piece there"
+        ).format(fitting=fitting)
         return [], [fault(operation, error.place, message, way)], []
     least = min(reach.least_x, 0.0)
     notes = _left(operation, path[0].start.x, least, scale)
@@ -127,6 +136,8 @@ def _left(operation: Operation, start: float, least: float, scale: Scale) -> lis
     across = least + nose
     height = nose - math.sqrt(max(0.0, nose * nose - across * across))
     return [
-        f"{operation.title}: the slide ends before the round nose is past the axis: a pip of "
-        f"diameter {scale.show(2 * across)}, at most {scale.show(height)} high, stays in the middle"
+        _(
+            "{title}: the slide ends before the round nose is past the axis: a pip of "
+            "diameter {show}, at most {height} high, stays in the middle"
+        ).format(title=operation.title, show=scale.show(2 * across), height=scale.show(height))
     ]

@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from tornillo.contour import Point
 from tornillo.errors import PartError
+from tornillo.language import _
 from tornillo.toml_lines import Place, line_numbers
 
 NUMBER_MAX = 1e6
@@ -36,8 +37,10 @@ class Source:
             line = int(found[1]) if found and found[1] else len(text.splitlines())
             reason = _AT_LINE.sub("", str(error))
             raise PartError(
-                f"{name}:{line}: this is not TOML: {reason}",
-                'look for a missing quote, bracket or "=" in this line or the one before',
+                _("{name}:{line}: this is not TOML: {reason}").format(
+                    name=name, line=line, reason=reason
+                ),
+                _('look for a missing quote, bracket or "=" in this line or the one before'),
             ) from error
 
     def refuse(self, place: Place, message: str, remedy: str) -> NoReturn:
@@ -67,7 +70,9 @@ class Table:
         self.title = title
         if not isinstance(values, Mapping):
             self.refuse(
-                "", f"{title} must be a table", remedy or f"write {title} on a line of its own"
+                "",
+                _("{title} must be a table").format(title=title),
+                remedy or _("write {title} on a line of its own").format(title=title),
             )
         self._values = dict(values)
         self._known: list[str] = []
@@ -87,7 +92,11 @@ class Table:
             return []
         found = self._take(key, f"[[{key}]]")
         if not isinstance(found, list) or not found:
-            self.refuse(key, f"{key} must be written as [[{key}]]", "use two square brackets")
+            self.refuse(
+                key,
+                _("{key} must be written as [[{key}]]").format(key=key),
+                _("use two square brackets"),
+            )
         return list(found)
 
     def has(self, key: str) -> bool:
@@ -101,7 +110,11 @@ class Table:
             return default
         value = self._take(key, f'{key} = "{choices[0] if choices else "..."}"')
         if not isinstance(value, str):
-            self.refuse(key, f"{self.title}: {key} must be a text", f'write {key} = "{value}"')
+            self.refuse(
+                key,
+                _("{title}: {key} must be a text").format(title=self.title, key=key),
+                _('write {key} = "{value}"').format(key=key, value=value),
+            )
         if choices:
             self.choice(key, value, choices)
         return value
@@ -109,8 +122,16 @@ class Table:
     def choice(self, key: str, value: str, choices: tuple[str, ...]) -> None:
         """Refuse a `value` of `key` that is none of `choices`, naming the nearest one."""
         if value not in choices:
-            remedy = _nearest(value, choices) or f"use one of: {', '.join(choices)}"
-            self.refuse(key, f'{self.title}: {key} cannot be "{value}"', remedy)
+            remedy = _nearest(value, choices) or _("use one of: {choices}").format(
+                choices=", ".join(choices)
+            )
+            self.refuse(
+                key,
+                _('{title}: {key} cannot be "{value}"').format(
+                    title=self.title, key=key, value=value
+                ),
+                remedy,
+            )
 
     def number(self, key: str, default: float | None = None) -> float:
         """The finite number `key`, or `default` when it is missing."""
@@ -122,7 +143,13 @@ class Table:
         """A number above 0 (or equal to its default) and below 1e6."""
         value = self.number(key, default)
         if value != default and not 0 < value < NUMBER_MAX:
-            self.refuse(key, f"{self.title}: {key} cannot be {value:g}", "give a number above 0")
+            self.refuse(
+                key,
+                _("{title}: {key} cannot be {value:g}").format(
+                    title=self.title, key=key, value=value
+                ),
+                _("give a number above 0"),
+            )
         return value
 
     def within(self, key: str, low: float, high: float, default: float) -> float:
@@ -131,8 +158,10 @@ class Table:
         if not low <= value <= high:
             self.refuse(
                 key,
-                f"{self.title}: {key} cannot be {value:g}",
-                f"give a number from {low:g} to {high:g}",
+                _("{title}: {key} cannot be {value:g}").format(
+                    title=self.title, key=key, value=value
+                ),
+                _("give a number from {low:g} to {high:g}").format(low=low, high=high),
             )
         return value
 
@@ -140,7 +169,13 @@ class Table:
         """A whole number from `low` to `high`, or `default` when it is missing."""
         value = self.within(key, low, high, default)
         if value != int(value):
-            self.refuse(key, f"{self.title}: {key} cannot be {value:g}", "give a whole number")
+            self.refuse(
+                key,
+                _("{title}: {key} cannot be {value:g}").format(
+                    title=self.title, key=key, value=value
+                ),
+                _("give a whole number"),
+            )
         return int(value)
 
     def point(self, key: str) -> Point:
@@ -148,9 +183,9 @@ class Table:
         inner = Table(
             self.source,
             (*self.place, key),
-            self._take(key, f"{key} = {{ z = 0.0, diameter = 10.0 }}"),
+            self._take(key, _("{key} = {{ z = 0.0, diameter = 10.0 }}").format(key=key)),
             f"{self.title}: {key}",
-            f"write {key} = {{ z = 0.0, diameter = 10.0 }}",
+            _("write {key} = {{ z = 0.0, diameter = 10.0 }}").format(key=key),
         )
         place = Point(inner.number("z"), inner.number("diameter") / 2)
         inner.finish()
@@ -158,20 +193,22 @@ class Table:
 
     def items(self, key: str, least: int) -> "list[Table]":
         """The tables in the list `key`, at least `least` of them."""
-        value = self._take(key, f"{key} = [{{ z = 0.0, diameter = 10.0 }}]")
+        value = self._take(key, _("{key} = [{{ z = 0.0, diameter = 10.0 }}]").format(key=key))
         if not isinstance(value, list) or len(value) < least:
             self.refuse(
                 key,
-                f"{self.title}: {key} must be a list of at least {least} points",
-                f"write {key} = [{{ z = 0.0, diameter = 10.0 }}, ...]",
+                _("{title}: {key} must be a list of at least {least} points").format(
+                    title=self.title, key=key, least=least
+                ),
+                _("write {key} = [{{ z = 0.0, diameter = 10.0 }}, ...]").format(key=key),
             )
         return [
             Table(
                 self.source,
                 (*self.place, key, number),
                 item,
-                f"{self.title}, point {number + 1}",
-                "write it as { z = 0.0, diameter = 10.0 }",
+                _("{title}, point {number}").format(title=self.title, number=number + 1),
+                _("write it as { z = 0.0, diameter = 10.0 }"),
             )
             for number, item in enumerate(value)
         ]
@@ -182,8 +219,10 @@ class Table:
         if not isinstance(value, list) or len(value) != 2:
             self.refuse(
                 key,
-                f"{self.title}: {key} must be two numbers, [start, end]",
-                f"write for example {key} = [0.0, -1.0]",
+                _("{title}: {key} must be two numbers, [start, end]").format(
+                    title=self.title, key=key
+                ),
+                _("write for example {key} = [0.0, -1.0]").format(key=key),
             )
         return self._number(key, value[0]), self._number(key, value[1])
 
@@ -191,8 +230,12 @@ class Table:
         """Refuse the first key that was not read, naming the nearest known one."""
         for key in self._values:
             if key not in self._known:
-                remedy = _nearest(key, self._known) or f"known keys: {', '.join(self._known)}"
-                self.refuse(key, f'{self.title}: unknown key "{key}"', remedy)
+                remedy = _nearest(key, self._known) or _("known keys: {known}").format(
+                    known=", ".join(self._known)
+                )
+                self.refuse(
+                    key, _('{title}: unknown key "{key}"').format(title=self.title, key=key), remedy
+                )
 
     def _take(self, key: str, example: str) -> object:
         """The value of `key`, which must be there."""
@@ -202,10 +245,16 @@ class Table:
                 if _nearest(unknown, [key]):
                     self.refuse(
                         unknown,
-                        f'{self.title}: unknown key "{unknown}"',
-                        f'did you mean "{key}"?',
+                        _('{title}: unknown key "{unknown}"').format(
+                            title=self.title, unknown=unknown
+                        ),
+                        _('did you mean "{key}"?').format(key=key),
                     )
-            self.refuse("", f"{self.title}: {key} is missing", f"add a line like {example}")
+            self.refuse(
+                "",
+                _("{title}: {key} is missing").format(title=self.title, key=key),
+                _("add a line like {example}").format(example=example),
+            )
         return self._values[key]
 
     def _number(self, key: str, value: object) -> float:
@@ -213,11 +262,17 @@ class Table:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             self.refuse(
                 key,
-                f"{self.title}: {key} must be a number, not {value!r}",
-                "write it without quotes, with a decimal point",
+                _("{title}: {key} must be a number, not {value!r}").format(
+                    title=self.title, key=key, value=value
+                ),
+                _("write it without quotes, with a decimal point"),
             )
         if not math.isfinite(value):
-            self.refuse(key, f"{self.title}: {key} must be finite", "write an ordinary number")
+            self.refuse(
+                key,
+                _("{title}: {key} must be finite").format(title=self.title, key=key),
+                _("write an ordinary number"),
+            )
         return float(value)
 
 
@@ -225,4 +280,4 @@ def _nearest(word: str, known: "list[str] | tuple[str, ...]") -> str:
     """A question for the known word nearest to `word`; empty when none is near."""
     begun = [name for name in known if len(word) > 2 and name.startswith(word)]
     close = begun or difflib.get_close_matches(word, known, n=1)
-    return f'did you mean "{close[0]}"?' if close else ""
+    return _('did you mean "{close}"?').format(close=close[0]) if close else ""

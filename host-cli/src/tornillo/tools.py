@@ -5,6 +5,7 @@ import math
 import re
 from dataclasses import dataclass
 
+from tornillo.language import _
 from tornillo.protocol import SLOPE_ANY, SLOPE_UNIT, TOOL_NAME_LENGTH
 from tornillo.toml_source import Source, Table
 
@@ -67,20 +68,24 @@ def read_tools(source: Source, entries: list[object]) -> tuple[Tool, ...]:
     """The tools of a file; raises PartError for one that cannot be."""
     found: dict[str, Tool] = {}
     for position, entry in enumerate(entries):
-        table = Table(source, ("tool", position), entry, f"tool {position + 1}")
+        table = Table(
+            source, ("tool", position), entry, _("tool {position}").format(position=position + 1)
+        )
         tool = _read_tool(table, position)
         if tool.name in found:
             table.refuse(
                 "name",
-                f'{table.title}: there already is a tool "{tool.name}"',
-                "give every tool a name of its own",
+                _('{title}: there already is a tool "{tool}"').format(
+                    title=table.title, tool=tool.name
+                ),
+                _("give every tool a name of its own"),
             )
         found[tool.name] = tool
     if len(found) > TOOLS_MAX:
         source.refuse(
             ("tool", TOOLS_MAX),
-            f"{len(found)} tools are too many",
-            f"use at most {TOOLS_MAX} in one part",
+            _("{found} tools are too many").format(found=len(found)),
+            _("use at most {tools_max} in one part").format(tools_max=TOOLS_MAX),
         )
     return tuple(found.values()) or (Tool(),)
 
@@ -91,10 +96,12 @@ def _read_tool(table: Table, position: int) -> Tool:
     if not NAME.fullmatch(name):
         table.refuse(
             "name",
-            f'{table.title}: the name "{name}" cannot be used',
-            f"use 1 to {TOOL_NAME_LENGTH} of the characters a-z, 0-9 and -",
+            _('{title}: the name "{name}" cannot be used').format(title=table.title, name=name),
+            _("use 1 to {tool_name_length} of the characters a-z, 0-9 and -").format(
+                tool_name_length=TOOL_NAME_LENGTH
+            ),
         )
-    table.title = f'tool "{name}"'
+    table.title = _('tool "{name}"').format(name=name)
     hand = table.text("hand", HANDS, default="right")
     front = FRONT_CLEARANCE
     back = table.within("back_clearance", 0.0, SQUARE, BACK_CLEARANCE)
@@ -106,8 +113,13 @@ def _read_tool(table: Table, position: int) -> Tool:
     if orientation != EXTERNAL:
         table.refuse(
             "orientation",
-            f"{table.title}: a tip of orientation {orientation} cannot be compensated",
-            f"use {EXTERNAL}, the tip at small z and small diameter, for turning towards the chuck",
+            _("{title}: a tip of orientation {orientation} cannot be compensated").format(
+                title=table.title, orientation=orientation
+            ),
+            _(
+                "use {external}, the tip at small z and small diameter, for turning "
+                "towards the chuck"
+            ).format(external=EXTERNAL),
         )
     offset_z, offset_x = _read_offset(table)
     tool = Tool(

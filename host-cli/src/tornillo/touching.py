@@ -12,6 +12,7 @@ import statistics
 from dataclasses import dataclass
 
 from tornillo.errors import ChipError, TornilloError
+from tornillo.language import _
 from tornillo.lathe import WATCH_EVERY_S, Lathe
 from tornillo.protocol import Axis, ErrorCode, SettingId, State, StatusInput
 from tornillo.status import Status
@@ -54,7 +55,7 @@ def still(lathe: Lathe, every: float = WATCH_EVERY_S) -> Status:
     except KeyboardInterrupt:
         _brake(lathe, every)
         raise TornilloError(
-            "stopped by Ctrl-C; the position is still known", "see `tornillo status`"
+            _("stopped by Ctrl-C; the position is still known"), _("see `tornillo status`")
         ) from None
     if status.state is State.ALARM:
         raise status.alarm_error()
@@ -86,7 +87,10 @@ def touch(
     the chip refuses (not homed, no sensor, contact closed already, outside the travel).
     """
     if not 1 <= repeats <= REPEATS_MAX:
-        raise TornilloError(f"{repeats} repeats are not possible", f"choose 1 to {REPEATS_MAX}")
+        raise TornilloError(
+            _("{repeats} repeats are not possible").format(repeats=repeats),
+            _("choose 1 to {repeats_max}").format(repeats_max=REPEATS_MAX),
+        )
     start = lathe.status().position(axis)
     end = start + steps
     back_off = lathe.setting(SettingId.TOUCH_BACK_OFF).value
@@ -100,17 +104,23 @@ def touch(
         _go(lathe, axis, back)
         if still(lathe, every).contact:
             raise TouchError(
-                "the contact stayed closed when the tool backed off",
-                "look for chips between tool and work; if its slide was still in the dead steps, "
-                "raise the setting touch_back_off",
+                _("the contact stayed closed when the tool backed off"),
+                _(
+                    "look for chips between tool and work; if its slide was still in the dead "
+                    "steps, raise the setting touch_back_off"
+                ),
             )
     touched = Touch(axis, tuple(positions))
     most = lathe.setting(SettingId.SPREAD_MAX).value
     if touched.spread > most:
         raise TouchError(
-            f"the readings differ by {touched.spread} steps: {', '.join(map(str, positions))}",
-            "clean tool and work, stop the spindle, and touch again; "
-            f"the setting spread_max allows {most}",
+            _("the readings differ by {spread} steps: {list}").format(
+                spread=touched.spread, list=", ".join(map(str, positions))
+            ),
+            _(
+                "clean tool and work, stop the spindle, and touch again; the setting "
+                "spread_max allows {most}"
+            ).format(most=most),
         )
     return touched
 
@@ -122,12 +132,12 @@ def _found(lathe: Lathe, status: Status, axis: Axis, way: tuple[int, int], every
     if StatusInput.TOUCHED in status.inputs:
         return here
     if here != end:
-        raise TouchError("the search was stopped", "start it again when you are ready")
+        raise TouchError(_("the search was stopped"), _("start it again when you are ready"))
     _go(lathe, axis, start)
     still(lathe, every)
     raise TouchError(
-        f"no contact within {abs(end - start)} steps",
-        "bring the tool nearer, or search farther; check that the sensor's wire is on the tool",
+        _("no contact within {abs} steps").format(abs=abs(end - start)),
+        _("bring the tool nearer, or search farther; check that the sensor's wire is on the tool"),
     )
 
 

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from tornillo.errors import TornilloError
+from tornillo.language import _
 
 RULE_FILE = "60-tornillo.rules"
 RULES_FOLDER = Path("etc/udev/rules.d")
@@ -44,22 +45,27 @@ def install(root: Path = ROOT) -> Path:
     it, with what to do.
     """
     if not sys.platform.startswith("linux"):
-        raise TornilloError("only Linux has udev", "nothing to do: the port can be used as it is")
+        raise TornilloError(
+            _("only Linux has udev"), _("nothing to do: the port can be used as it is")
+        )
     path = place(root)
     if root == ROOT and not path.parent.is_dir() and shutil.which(UDEVADM) is None:
         raise TornilloError(
-            f"there is no {path.parent}: this computer has no udev",
-            "no rule can help; give the user the right to open the port in another way",
+            _("there is no {parent}: this computer has no udev").format(parent=path.parent),
+            _("no rule can help; give the user the right to open the port in another way"),
         )
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(rule(), encoding="utf-8")
     except PermissionError as error:
-        raise TornilloError(f"this user may not write {path}", f"type `{COMMAND}`") from error
+        raise TornilloError(
+            _("this user may not write {path}").format(path=path),
+            _("type `{command}`").format(command=COMMAND),
+        ) from error
     except OSError as error:
         raise TornilloError(
-            f"{path} cannot be written: {error.strerror}",
-            "print the rule with `tornillo udev` and put it there by hand",
+            _("{path} cannot be written: {strerror}").format(path=path, strerror=error.strerror),
+            _("print the rule with `tornillo udev` and put it there by hand"),
         ) from error
     if root == ROOT:
         _reload()

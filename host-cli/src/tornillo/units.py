@@ -7,6 +7,7 @@ All conversions round to the nearest step.
 
 from dataclasses import dataclass
 
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.protocol import FEED_UNIT
 
@@ -58,7 +59,9 @@ class Scale:
 
     def show_diameter(self, radius_steps: int) -> str:
         """A radius in steps as a diameter with its unit."""
-        return f"diameter {self.show(self.diameter(radius_steps))}"
+        return _("diameter {radius_steps}").format(
+            radius_steps=self.show(self.diameter(radius_steps))
+        )
 
     def show_z(self, z_steps: int) -> str:
         """A position along in words."""

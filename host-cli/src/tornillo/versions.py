@@ -7,6 +7,7 @@ numbers of the firmware's version.
 
 from tornillo.errors import NoAnswerError, VersionError
 from tornillo.holders import holders
+from tornillo.language import _
 from tornillo.protocol import PROTOCOL_VERSION
 
 HEAD = 4  # bytes
@@ -30,24 +31,37 @@ def check(hello: bytes) -> None:
     own = own_version()
     if spoken is None or len(hello) < HEAD:
         raise VersionError(
-            f"the firmware does not tell its version; tornillo {own} speaks protocol "
-            f"{PROTOCOL_VERSION}",
+            _(
+                "the firmware does not tell its version; tornillo {own} speaks protocol "
+                "{protocol_version}"
+            ).format(own=own, protocol_version=PROTOCOL_VERSION),
             _update_firmware(own),
         )
     firmware = ".".join(map(str, hello[1:HEAD]))
     older = spoken < PROTOCOL_VERSION
-    message = (
-        f"the firmware {firmware} speaks protocol {spoken}, "
-        f"{'older' if older else 'newer'} than protocol {PROTOCOL_VERSION} of tornillo {own}"
+    message = _(
+        "the firmware {firmware} speaks protocol {spoken}, {what} than protocol "
+        "{protocol_version} of tornillo {own}"
+    ).format(
+        firmware=firmware,
+        spoken=spoken,
+        what=_("older") if older else _("newer"),
+        protocol_version=PROTOCOL_VERSION,
+        own=own,
     )
     if older:
         raise VersionError(
-            message, f"{_update_firmware(own)}, or install the tornillo that came with {firmware}"
+            message,
+            _("{own}, or install the tornillo that came with {firmware}").format(
+                own=_update_firmware(own), firmware=firmware
+            ),
         )
     raise VersionError(
         message,
-        f"update tornillo: install host-cli from the release that the firmware {firmware} "
-        "came with",
+        _(
+            "update tornillo: install host-cli from the release that the firmware "
+            "{firmware} came with"
+        ).format(firmware=firmware),
     )
 
 
@@ -55,8 +69,10 @@ def refused_hello(code: str) -> VersionError:
     """The firmware knows HELLO no more or not yet."""
     own = own_version()
     return VersionError(
-        f"the firmware answers HELLO with {code}: its version is unknown, tornillo {own} speaks "
-        f"protocol {PROTOCOL_VERSION}",
+        _(
+            "the firmware answers HELLO with {code}: its version is unknown, tornillo "
+            "{own} speaks protocol {protocol_version}"
+        ).format(code=code, own=own, protocol_version=PROTOCOL_VERSION),
         _update_firmware(own),
     )
 
@@ -64,30 +80,46 @@ def refused_hello(code: str) -> VersionError:
 def no_hello(port: str, error: NoAnswerError) -> NoAnswerError:
     """Nobody has answered HELLO at `port`."""
     own = own_version()
-    speaks = f"tornillo {own} speaks protocol {PROTOCOL_VERSION}"
+    speaks = _("tornillo {own} speaks protocol {protocol_version}").format(
+        own=own, protocol_version=PROTOCOL_VERSION
+    )
     others = ", ".join(map(str, holders(port)))
-    warning = f"{others} has the port open too: close it if it is not the lathe; " if others else ""
+    warning = (
+        _("{others} has the port open too: close it if it is not the lathe; ").format(others=others)
+        if others
+        else ""
+    )
     if error.heard:
         return NoAnswerError(
-            f"what answers at {port} sends {error.heard} bytes and no frame of a lathe; {speaks}",
-            f"{warning}choose the lathe's port with --port; if it is the lathe's, the firmware is "
-            f"older than the protocol: {_update_firmware(own)}",
+            _(
+                "what answers at {port} sends {heard} bytes and no frame of a lathe; {speaks}"
+            ).format(port=port, heard=error.heard, speaks=speaks),
+            _(
+                "{warning}choose the lathe's port with --port; if it is the lathe's, the "
+                "firmware is older than the protocol: {own}"
+            ).format(warning=warning, own=_update_firmware(own)),
             error.heard,
         )
     return NoAnswerError(
-        f"nothing answers at {port}; {speaks}",
-        f"{warning}check that the port is the lathe's and that the lathe is switched on, plug the "
-        "cable out and in again; if it stays silent, its firmware is too old or damaged: "
-        f"{_update_firmware(own)}",
+        _("nothing answers at {port}; {speaks}").format(port=port, speaks=speaks),
+        _(
+            "{warning}check that the port is the lathe's and that the lathe is "
+            "switched on, plug the cable out and in again; if it stays silent, its "
+            "firmware is too old or damaged: {own}"
+        ).format(warning=warning, own=_update_firmware(own)),
         error.heard,
     )
 
 
 def unknown_command_note(firmware: str) -> str:
     """What to add when a firmware of the same protocol lacks a command."""
-    return f" (firmware {firmware}, tornillo {own_version()})"
+    return _(" (firmware {firmware}, tornillo {own_version})").format(
+        firmware=firmware, own_version=own_version()
+    )
 
 
 def _update_firmware(own: str) -> str:
     """What to do about an old firmware."""
-    return f"update the firmware to that of tornillo {own} (`make firmware`, then a programmer)"
+    return _(
+        "update the firmware to that of tornillo {own} (`make firmware`, then a programmer)"
+    ).format(own=own)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from types import TracebackType
 
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.status import Status
 
 #: How often a waiting main thread looks up, in seconds; Ctrl-C needs it on Windows.
@@ -70,12 +71,13 @@ class Watch:
         while not self._ended.wait(max(0.0, min(LOOK_UP_S, end - time.monotonic()))):
             if time.monotonic() >= end:
                 raise TornilloError(
-                    f"the watch goes on after {timeout_s:g} s", "wait longer, or `stop` it"
+                    _("the watch goes on after {timeout_s:g} s").format(timeout_s=timeout_s),
+                    _("wait longer, or `stop` it"),
                 )
         if self._error is not None:
             raise self._error
         if self._last is None:
-            raise TornilloError("stopped before a status came", "wait before `stop`")
+            raise TornilloError(_("stopped before a status came"), _("wait before `stop`"))
         return self._last
 
     def __enter__(self) -> "Watch":

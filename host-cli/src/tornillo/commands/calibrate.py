@@ -12,6 +12,7 @@ from tornillo.calibration_report import as_json, axis_named, report
 from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.commands.following import follow_homing
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.lathe import Lathe
 from tornillo.lathe_slide import LatheSlide
 from tornillo.machine_file import load_file
@@ -43,9 +44,9 @@ def calibrate() -> None:
     """Separate backlash from switch travel, and fit the size of a step.
 
     \b
-    Examples: tornillo calibrate marks z       three marks cut, measured by you
-              tornillo calibrate gauge x       dial gauge, readings typed
-              tornillo calibrate contact x     contact sensor, nothing to type
+    Examples: tornillo calibrate marks z       # three marks cut, measured by you
+              tornillo calibrate gauge x       # dial gauge, readings typed
+              tornillo calibrate contact x     # contact sensor, nothing to type
     """
 
 
@@ -86,7 +87,7 @@ def marks(
     Example: tornillo calibrate marks z --readings measured.txt --store
     """
     if machine is not None and store:
-        raise click.UsageError("--store needs the lathe; leave --machine out")
+        raise click.UsageError(_("--store needs the lathe; leave --machine out"))
     ways = _asked(units) if readings is None else read_ways(readings, units)
     programme = Programme(forward, back)
     if machine is not None:
@@ -194,7 +195,7 @@ def uncompensated(lathe: Lathe, known: Known) -> Iterator[None]:
 
 def _home(lathe: Lathe) -> None:
     """Home and wait."""
-    _tell("homing, X first; Ctrl-C stops")
+    _tell(_("homing, X first; Ctrl-C stops"))
     lathe.home()
     follow_homing(lathe)
 
@@ -206,8 +207,10 @@ def _need_room(lathe: Lathe, slide: LatheSlide, axis: Axis, steps: int) -> None:
     room = travel + slide.position
     if room < steps:
         raise TornilloError(
-            f"the slide has {room} steps of way left, {steps} are needed",
-            "move it towards its limit switch (`tornillo jog`), or choose fewer --steps",
+            _("the slide has {room} steps of way left, {steps} are needed").format(
+                room=room, steps=steps
+            ),
+            _("move it towards its limit switch (`tornillo jog`), or choose fewer --steps"),
         )
 
 
@@ -227,9 +230,13 @@ def _thickness(block: str, units: str) -> float:
     try:
         thickness = length_um(block, units)
     except ValueError as error:
-        raise click.BadParameter(f"{block!r} is no length", param_hint="--block") from error
+        raise click.BadParameter(
+            _("{block!r} is no length").format(block=block), param_hint="--block"
+        ) from error
     if thickness <= 0:
-        raise click.BadParameter(f"{block} is no thickness", param_hint="--block")
+        raise click.BadParameter(
+            _("{block} is no thickness").format(block=block), param_hint="--block"
+        )
     return thickness
 
 
@@ -239,7 +246,9 @@ def _tell(line: str) -> None:
 
 def _ready(line: str) -> None:
     """Wait until the person has done it."""
-    click.prompt(f"{line}, then press Enter", default="", show_default=False, err=True)
+    click.prompt(
+        _("{line}, then press Enter").format(line=line), default="", show_default=False, err=True
+    )
 
 
 def _asked(units: str) -> list[Ways]:
@@ -247,17 +256,19 @@ def _asked(units: str) -> list[Ways]:
     found: list[Ways] = []
     while True:
         number = len(found) + 1
-        first = ask(f"specimen {number}: mark 1 to 2", units, may_end=bool(found))
+        first = ask(
+            _("specimen {number}: mark 1 to 2").format(number=number), units, may_end=bool(found)
+        )
         if first is None:
             return found
-        second = ask(f"specimen {number}: mark 2 to 3", units)
+        second = ask(_("specimen {number}: mark 2 to 3").format(number=number), units)
         assert second is not None
         found.append(Ways(first, second))
 
 
 def ask(question: str, units: str, may_end: bool = False) -> float | None:
     """Ask for a length until one is typed; micrometres. None: nothing was typed, if that may be."""
-    ending = ", nothing to end" if may_end else ""
+    ending = _(", nothing to end") if may_end else ""
     while True:
         typed = click.prompt(
             f"{question} [{units}{ending}]", default="", show_default=False, err=True
@@ -267,7 +278,12 @@ def ask(question: str, units: str, may_end: bool = False) -> float | None:
         try:
             return length_um(typed, units)
         except ValueError:
-            click.echo(f"{typed!r} is no number; type a length in {units}", err=True)
+            click.echo(
+                _("{typed!r} is no number; type a length in {units}").format(
+                    typed=typed, units=units
+                ),
+                err=True,
+            )
 
 
 def known_by(lathe: Lathe, axis: Axis) -> Known:
@@ -275,7 +291,7 @@ def known_by(lathe: Lathe, axis: Axis) -> Known:
     status = lathe.status()
     if not status.homed:
         raise TornilloError(
-            "the lathe is not homed, so its dead steps are not known", "`tornillo home` first"
+            _("the lathe is not homed, so its dead steps are not known"), _("`tornillo home` first")
         )
     ids = _settings_of(axis)
     return Known(
@@ -293,10 +309,13 @@ def known_from(machine: str, axis: Axis) -> Known:
     missing = [one.name.lower() for one in (step, travel, dead) if one not in values]
     if missing:
         raise TornilloError(
-            f"machine {machine}: [settings] {missing[0]} is missing",
-            "write a whole file with `tornillo settings save FILE`",
+            _("machine {machine}: [settings] {missing} is missing").format(
+                machine=machine, missing=missing[0]
+            ),
+            _("write a whole file with `tornillo settings save FILE`"),
         )
-    return Known(axis, values[step], values[dead], values[travel])
+    # -1: never measured, so none are taken up.
+    return Known(axis, values[step], max(0, values[dead]), values[travel])
 
 
 def _settings_of(axis: Axis) -> tuple[SettingId, SettingId, SettingId]:
@@ -320,12 +339,19 @@ def finish(lathe: Lathe, found: Calibration, store: bool) -> None:
         return
     if not store:
         for setting, value in found.values.items():
-            click.echo(f"store it: tornillo settings set {setting.name.lower()} {value}", err=True)
+            click.echo(
+                _("store it: tornillo settings set {setting} {value}").format(
+                    setting=setting.name.lower(), value=value
+                ),
+                err=True,
+            )
         return
     changes = store_all(lathe, found.values, lambda change: click.echo(change, err=True))
     for name in outdated_parts(lathe, changes):
-        click.echo(f"made for another step size, upload it again: {name}", err=True)
-    click.echo("stored; home again, so that it counts: `tornillo home`", err=True)
+        click.echo(
+            _("made for another step size, upload it again: {name}").format(name=name), err=True
+        )
+    click.echo(_("stored; home again, so that it counts: `tornillo home`"), err=True)
 
 
 VERBS = (calibrate,)

@@ -22,10 +22,15 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON f
 
 @contextmanager
 def connected() -> Iterator[Lathe]:
-    """The lathe at the port of the command line."""
+    """The lathe at the port of the command line; Ctrl-C brings it to a controlled stand."""
+    from tornillo.commands.interrupting import interrupted
+
     port = click.get_current_context().find_object(str)
     with Lathe.open(port, notify=_tell) as lathe:
-        yield lathe
+        try:
+            yield lathe
+        except KeyboardInterrupt:
+            raise interrupted(lathe) from None
 
 
 def _tell(line: str) -> None:

@@ -6,6 +6,8 @@ from pathlib import Path
 import click
 
 from tornillo.commands.connection import machine_option
+from tornillo.commands.progress import busy
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.part import Part
 
@@ -25,17 +27,19 @@ def draw(file: str, output: str, machine: str) -> None:
     """Draw FILE: stock, finished shape, passes and dimensions.
 
     \b
-    Example: tornillo draw examples/test-bar.toml -o test-bar.svg
+    Examples: tornillo draw examples/test-bar.toml -o test-bar.svg
+              tornillo draw examples/test-bar.toml -o test-bar.png
     """
     from tornillo.drawing import draw_part
 
     if Path(output).suffix not in (".svg", ".png"):
-        raise click.BadParameter("the picture must end in .svg or .png", param_hint="--output")
+        raise click.BadParameter(_("the picture must end in .svg or .png"), param_hint="--output")
     part = Part.load(file)
     known = Machine.load(machine)
     part.check(known)
-    draw_part(part, known, Path(output))
-    click.echo(f"{output} written")
+    with busy(_("drawing")):
+        draw_part(part, known, Path(output))
+    click.echo(_("{output} written").format(output=output))
 
 
 VERBS = (draw,)

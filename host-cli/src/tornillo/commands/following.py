@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Wait for a run or a homing to end, showing its progress; Ctrl-C holds or stops it."""
+"""Wait for a run or a homing to end, showing its progress."""
 
-import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import click
 
-from tornillo.errors import ChipError, TornilloError
+from tornillo.commands.progress import busy, on_terminal
+from tornillo.errors import TornilloError
 from tornillo.image import OPERATIONS, PartImage
+from tornillo.language import _, later
 from tornillo.lathe import Lathe
-from tornillo.protocol import PERMILLE_DONE, ErrorCode, PauseRecord, State, ToolRecord
+from tornillo.protocol import PERMILLE_DONE, PauseRecord, State, ToolRecord
 from tornillo.status import Status
 
 POLL_S = 0.1
-STEP_MESSAGE = "step by step: look at it"
+STEP_MESSAGE = later("step by step: look at it")
 #: Shows how many permille of the run are done and what is being cut.
 Display = Callable[[int, str], None]
 
@@ -22,16 +23,13 @@ Display = Callable[[int, str], None]
 def follow_homing(lathe: Lathe) -> Status:
     """Wait until homing has ended; return the status then.
 
-    Raises AlarmError when it failed, TornilloError after Ctrl-C.
+    Raises AlarmError when it failed.
     """
-    try:
-        with lathe.watch(lambda status: status.state is not State.HOMING, POLL_S) as watch:
-            status = watch.wait()
-    except KeyboardInterrupt:
-        lathe.stop()
-        raise TornilloError(
-            "homing was stopped", "acknowledge with `tornillo reset`, then `tornillo home` again"
-        ) from None
+    with (
+        busy(_("homing")),
+        lathe.watch(lambda status: status.state is not State.HOMING, POLL_S) as watch,
+    ):
+        status = watch.wait()
     if status.state is State.ALARM:
         raise status.alarm_error()
     return status
@@ -40,19 +38,16 @@ def follow_homing(lathe: Lathe) -> Status:
 def follow_run(lathe: Lathe) -> None:
     """Show the progress of the run until the part is finished.
 
-    Raises AlarmError for an alarm, TornilloError when the run was stopped or held by Ctrl-C.
+    Raises AlarmError for an alarm, TornilloError when the run was stopped.
     """
-    try:
-        with _display() as show:
-            status = _until_standing(lathe, show)
-    except KeyboardInterrupt:
-        raise _held(lathe) from None
+    with _display() as show:
+        status = _until_standing(lathe, show)
     if status.state is State.ALARM:
         raise status.alarm_error()
     if not status.finished:
         raise TornilloError(
-            "the run was stopped before its end",
-            "start it again from its beginning with `tornillo run`",
+            _("the run was stopped before its end"),
+            _("start it again from its beginning with `tornillo run`"),
         )
 
 
@@ -67,32 +62,43 @@ def _until_standing(lathe: Lathe, show: Display) -> Status:
         if status.state is State.PAUSE:
             if status.operation not in asked:
                 asked[status.operation] = pause_message(lathe, status)
-            text += f": {asked[status.operation]}; go on with RUN or `tornillo resume`"
+            text += _(": {asked}; go on with RUN or `tornillo resume`").format(
+                asked=asked[status.operation]
+            )
         show(status.permille, text)
         return False
 
     with lathe.watch(show_status, POLL_S) as watch:
         status = watch.wait()
     if status.finished:
-        show(PERMILLE_DONE, "finished")
+        show(PERMILLE_DONE, _("finished"))
     return status
 
 
 def describe(status: Status) -> str:
+    """What is being cut, and whether it stands still."""
+    waiting = {State.HOLD: _(", held"), State.PAUSE: _(", paused")}
+    return place(status) + waiting.get(status.state, "")
+
+
+def place(status: Status) -> str:
     """What is being cut."""
-    text = "on the way to the part"
+    text = _("on the way to the part")
     if status.operation:
-        text = f"operation {status.operation} of {status.operations}"
+        text = _("operation {operation} of {operations}").format(
+            operation=status.operation, operations=status.operations
+        )
     if status.passes:
-        text += f", pass {status.pass_number} of {status.passes}"
-    waiting = {State.HOLD: ", held", State.PAUSE: ", paused"}
-    return text + waiting.get(status.state, "")
+        text += _(", pass {pass_number} of {passes}").format(
+            pass_number=status.pass_number, passes=status.passes
+        )
+    return text
 
 
 def pause_message(lathe: Lathe, status: Status) -> str:
     """What the operator is asked for before operation `status.operation` goes on."""
     if status.slot is None:
-        return STEP_MESSAGE
+        return _(STEP_MESSAGE)
     return asked_for(lathe.image(status.slot), status.operation)
 
 
@@ -110,31 +116,13 @@ def asked_for(image: PartImage, operation: int) -> str:
         elif isinstance(record, OPERATIONS):
             count += 1
             if count == operation and isinstance(record, PauseRecord):
-                return record.message.decode("ascii", "replace") or STEP_MESSAGE
+                return record.message.decode("ascii", "replace") or _(STEP_MESSAGE)
             if count == operation and tool is not None and operation > 1:
-                return f"put in the tool {tool.name.rstrip(bytes(1)).decode('ascii', 'replace')}"
+                return _("put in the tool {tool}").format(
+                    tool=tool.name.rstrip(bytes(1)).decode("ascii", "replace")
+                )
             tool = None
-    return STEP_MESSAGE
-
-
-def _held(lathe: Lathe) -> TornilloError:
-    """Hold the run after Ctrl-C and say where it stands."""
-    try:
-        lathe.hold()
-    except ChipError as error:
-        if error.code is not ErrorCode.NOT_RUNNING:
-            raise
-        return TornilloError("interrupted; the lathe was not cutting", "see `tornillo status`")
-    status = lathe.status()
-    return TornilloError(
-        f"held by Ctrl-C at {describe(status).removesuffix(', held')}; nothing is lost",
-        "go on with `tornillo resume --follow`, or give up with `tornillo stop`",
-    )
-
-
-def on_terminal() -> bool:
-    """Whether messages go to a terminal."""
-    return sys.stderr.isatty()
+    return _(STEP_MESSAGE)
 
 
 @contextmanager
@@ -160,7 +148,7 @@ def _bar() -> Iterator[Display]:
         TimeElapsedColumn(),
     )
     with Progress(*columns, console=Console(stderr=True)) as progress:
-        task = progress.add_task("starting", total=PERMILLE_DONE)
+        task = progress.add_task(_("starting"), total=PERMILLE_DONE)
 
         def show(permille: int, text: str) -> None:
             progress.update(task, completed=permille, description=text)

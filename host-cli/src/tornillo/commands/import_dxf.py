@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from tornillo.commands.connection import machine_option
+from tornillo.commands.progress import busy
 from tornillo.errors import DrawingError, TornilloError
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.protocol import NAME_LENGTH
 
@@ -46,7 +48,9 @@ def _name_of(most: int) -> Callable[[Any, Any, str | None], str | None]:
 
     def checked(_context: Any, _option: Any, name: str | None) -> str | None:
         if name is not None and not re.fullmatch(f"[a-z0-9-]{{1,{most}}}", name):
-            raise click.BadParameter(f"use 1 to {most} of the characters a-z, 0-9 and -")
+            raise click.BadParameter(
+                _("use 1 to {most} of the characters a-z, 0-9 and -").format(most=most)
+            )
         return name
 
     return checked
@@ -192,13 +196,17 @@ def import_dxf(
     from tornillo.dxf.importer import Import
 
     if picture and Path(picture).suffix not in PICTURES:
-        raise click.BadParameter("the picture must end in .svg or .png", param_hint="--picture")
+        raise click.BadParameter(_("the picture must end in .svg or .png"), param_hint="--picture")
     for path in (output, picture):
         if path and Path(path).exists() and not force:
-            raise TornilloError(f"{path} exists already", "choose another name, or add --force")
+            raise TornilloError(
+                _("{path} exists already").format(path=path),
+                _("choose another name, or add --force"),
+            )
     task = Import(Path(file), _view(said), Machine.load(machine))
     try:
-        text = task.part_text(_cutting(said))
+        with busy(_("reading the drawing")):
+            text = task.part_text(_cutting(said))
     except DrawingError as error:
         _show_problem(task, error, Path(picture or f"{output.removesuffix('.toml')}.problem.svg"))
         raise
@@ -206,11 +214,20 @@ def import_dxf(
         Path(output).write_text(text, encoding="utf-8")
     except OSError as error:
         raise TornilloError(
-            f"{output} cannot be written: {error.strerror}", "choose another place"
+            _("{output} cannot be written: {strerror}").format(
+                output=output, strerror=error.strerror
+            ),
+            _("choose another place"),
         ) from error
     _tell(task, output)
     if picture:
-        _save(task, f"{file}, as {output}", task.remarks, (), Path(picture))
+        _save(
+            task,
+            _("{file}, as {output}").format(file=file, output=output),
+            task.remarks,
+            (),
+            Path(picture),
+        )
 
 
 def _view(said: dict[str, Any]) -> "View":
@@ -241,20 +258,34 @@ def _tell(task: "Import", output: str) -> None:
     units = task.paper.units
     arcs = sum(1 for segment in contour.segments if segment.center)
     click.echo(
-        f"{output} written: {len(contour.segments) - arcs} lines and {arcs} arcs, "
-        f"{contour.length:.4g} {units} long, "
-        f"largest diameter {contour.largest_diameter:.4g} {units}"
+        _(
+            "{output} written: {segments} lines and {arcs} arcs, {length:.4g} {units} "
+            "long, largest diameter {largest_diameter:.4g} {units}"
+        ).format(
+            output=output,
+            segments=len(contour.segments) - arcs,
+            arcs=arcs,
+            length=contour.length,
+            units=units,
+            largest_diameter=contour.largest_diameter,
+        )
     )
     for remark in task.remarks:
         click.echo(f"  {remark}")
-    click.echo(f"next: tornillo check {output}")
+    click.echo(_("next: tornillo check {output}").format(output=output))
 
 
 def _show_problem(task: "Import", error: DrawingError, path: Path) -> None:
     """Draw the place of a problem, when it has one."""
     if error.marks:
-        title = f"{task.path.name} cannot be imported"
-        _save(task, title, (str(error), f"Try: {error.remedy}"), error.marks, path)
+        title = _("{path} cannot be imported").format(path=task.path.name)
+        _save(
+            task,
+            title,
+            (str(error), _("Try: {remedy}").format(remedy=error.remedy)),
+            error.marks,
+            path,
+        )
 
 
 def _save(task: "Import", title: str, lines: Any, marks: Any, path: Path) -> None:
@@ -262,7 +293,7 @@ def _save(task: "Import", title: str, lines: Any, marks: Any, path: Path) -> Non
     from tornillo.dxf.picture import save_picture
 
     save_picture(task, title, lines, marks, path)
-    click.echo(f"{path} shows it", err=bool(marks))
+    click.echo(_("{path} shows it").format(path=path), err=bool(marks))
 
 
 VERBS = (import_dxf,)

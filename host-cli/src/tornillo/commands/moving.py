@@ -7,8 +7,10 @@ from typing import Any
 import click
 
 from tornillo.commands.connection import connected, json_option, print_json
+from tornillo.commands.jog_pad import open_pad
 from tornillo.commands.settings import finite, units_option
 from tornillo.errors import TornilloError
+from tornillo.language import _, later
 from tornillo.lathe import Lathe
 from tornillo.machine import Machine
 from tornillo.protocol import Axis
@@ -18,7 +20,7 @@ from tornillo.units import NM_PER_UNIT, Scale
 
 LENGTH = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+))\s*(\w*)")
 POLL_S = 0.1
-UNDER_WAY = "moving; Ctrl-C stops"
+UNDER_WAY = later("moving; Ctrl-C stops")
 
 axis_argument = click.argument("name", type=click.Choice(["x", "z"]), metavar="AXIS")
 rate_option = click.option(
@@ -31,21 +33,33 @@ negative_numbers = {"ignore_unknown_options": True}
 
 
 @click.command(context_settings=negative_numbers)
-@axis_argument
-@click.argument("distance")
+@click.argument("name", type=click.Choice(["x", "z"]), metavar="[AXIS", required=False)
+@click.argument("distance", metavar="DISTANCE]", required=False)
 @click.option("--steps", "in_steps", is_flag=True, help="DISTANCE is a number of steps.")
 @rate_option
-def jog(name: str, distance: str, in_steps: bool, rate: int | None) -> None:
+@units_option
+def jog(
+    name: str | None, distance: str | None, in_steps: bool, rate: int | None, units: str
+) -> None:
     """Move slide AXIS (x or z) by DISTANCE, like -0.5mm or 0.02inch; waits for the end.
+
+    Without AXIS the arrow keys move: by steps of a size you choose, or as long as a key is held.
+    Releasing it stops within a fifth of a second, and so does a lost link.
 
     Minus is towards the spindle's axis (x) or the chuck (z); x is the way of the slide, half of
     what a diameter changes. Works before homing too, slowly, and away from a limit switch.
     Ctrl-C stops.
 
     \b
-    Examples: tornillo jog x -0.5mm
+    Examples: tornillo jog
+              tornillo jog x -0.5mm
               tornillo jog z 40 --steps --rate 50
     """
+    if name is None:
+        open_pad(units)
+        return
+    if distance is None:
+        raise click.UsageError(_("say how far, like -0.5mm"))
     axis = Axis[name.upper()]
     length, unit = _length(distance, in_steps)
     with connected() as lathe:
@@ -55,11 +69,11 @@ def jog(name: str, distance: str, in_steps: bool, rate: int | None) -> None:
         if before.homed:
             _check_travel(machine, axis, end)
         lathe.jog(axis, end - before.position(axis), rate or 0)
-        click.echo(UNDER_WAY, err=True)
+        click.echo(_(UNDER_WAY), err=True)
         now = still(lathe, POLL_S)
         _report_place(lathe, now)
     if now.position(axis) != end:
-        raise TornilloError("the jog was stopped before its end", "see `tornillo status`")
+        raise TornilloError(_("the jog was stopped before its end"), _("see `tornillo status`"))
 
 
 @click.command(context_settings=negative_numbers)
@@ -77,7 +91,7 @@ def goto(diameter: float | None, at: float | None, units: str, rate: int | None)
     Example: tornillo goto --diameter 30 --z 2
     """
     if diameter is None and at is None:
-        raise click.UsageError("say where: --diameter, --z, or both")
+        raise click.UsageError(_("say where: --diameter, --z, or both"))
     with connected() as lathe:
         machine = lathe.machine()
         scale = Scale(units, machine)
@@ -89,11 +103,11 @@ def goto(diameter: float | None, at: float | None, units: str, rate: int | None)
         for axis in Axis:
             _check_travel(machine, axis, place[axis])
         lathe.goto(*place, rate or 0)
-        click.echo(UNDER_WAY, err=True)
+        click.echo(_(UNDER_WAY), err=True)
         now = still(lathe, POLL_S)
         _report_place(lathe, now)
     if (now.x, now.z) != place:
-        raise TornilloError("the way was stopped before its end", "see `tornillo status`")
+        raise TornilloError(_("the way was stopped before its end"), _("see `tornillo status`"))
 
 
 @click.command("touch")
@@ -136,7 +150,7 @@ def touch_work(name: str, units: str, as_json: bool, **goal: Any) -> None:
     known = goal["at"] if axis is Axis.Z else goal["diameter"]
     foreign = ("diameter", "two_sided") if axis is Axis.Z else ("at",)
     if any(goal[option] is not None and goal[option] is not False for option in foreign):
-        raise click.UsageError("--diameter and --two-sided belong to x, --at to z")
+        raise click.UsageError(_("--diameter and --two-sided belong to x, --at to z"))
     length, unit = _length(goal["within"])
     with connected() as lathe:
         machine = lathe.machine()
@@ -154,11 +168,11 @@ def _touch_sides(lathe: Lathe, axis: Axis, way: int, repeats: int, two_sided: bo
     """Touch, and on the other side of the bar too if wanted; never beyond the soft limits."""
     start = lathe.status().position(axis)
     end = max(-_travel(lathe.machine(), axis), min(0, start + way))
-    click.echo(UNDER_WAY, err=True)
+    click.echo(_(UNDER_WAY), err=True)
     sides = [touch(lathe, axis, end - start, repeats, POLL_S)]
     if two_sided:
         click.prompt(
-            "turn the chuck by hand, half a turn, then press Enter",
+            _("turn the chuck by hand, half a turn, then press Enter"),
             default="",
             show_default=False,
             prompt_suffix="",
@@ -173,10 +187,10 @@ def _length(text: str, in_steps: bool = False) -> tuple[float, str]:
     found = LENGTH.fullmatch(text)
     units = ("",) if in_steps else tuple(NM_PER_UNIT)
     if found is None or found[2].lower() not in units:
-        form = "a whole number of steps" if in_steps else "a length like -0.5mm or 0.02inch"
-        raise click.UsageError(f'"{text}": write {form}')
+        form = _("a whole number of steps") if in_steps else _("a length like -0.5mm or 0.02inch")
+        raise click.UsageError(_('"{text}": write {form}').format(text=text, form=form))
     if in_steps and not float(found[1]).is_integer():
-        raise click.UsageError(f'"{text}": there are no parts of a step')
+        raise click.UsageError(_('"{text}": there are no parts of a step').format(text=text))
     return float(found[1]), found[2].lower()
 
 
@@ -198,19 +212,25 @@ def _check_travel(machine: Machine, axis: Axis, position: int) -> None:
     travel = _travel(machine, axis)
     if not -travel <= position <= 0:
         raise TornilloError(
-            f"{axis.name} cannot go to step {position}: its travel is {-travel} to 0",
-            "go less far, or check the travel with `tornillo settings`",
+            _("{axis} cannot go to step {position}: its travel is {travel} to 0").format(
+                axis=axis.name, position=position, travel=-travel
+            ),
+            _("go less far, or check the travel with `tornillo settings`"),
         )
 
 
 def _report_place(lathe: Lathe, now: Status) -> None:
     """Say where the tool is."""
     if not now.homed:
-        click.echo(f"X {now.x}, Z {now.z} steps; not homed")
+        click.echo(_("X {x}, Z {z} steps; not homed").format(x=now.x, z=now.z))
         return
     scale = Scale("mm", lathe.machine())
     diameter = scale.show_diameter(now.x - scale.machine.zero_x)
-    click.echo(f"tool at {diameter}, {scale.show_z(now.z - scale.machine.zero_z)}")
+    click.echo(
+        _("tool at {diameter}, {show_z}").format(
+            diameter=diameter, show_z=scale.show_z(now.z - scale.machine.zero_z)
+        )
+    )
 
 
 def _report_touch(
@@ -221,10 +241,10 @@ def _report_touch(
     machine = scale.machine
     if axis is Axis.X:
         value = scale.diameter(position - machine.zero_x)
-        text = f"touched diameter {value:.3f} {scale.units}"
+        text = _("touched diameter {value:.3f} {units}").format(value=value, units=scale.units)
     else:
         value = scale.length(position - machine.zero_z)
-        text = f"touched z = {value:.3f} {scale.units}"
+        text = _("touched z = {value:.3f} {units}").format(value=value, units=scale.units)
     eccentricity = abs(sides[0].position - sides[-1].position) / 2
     if as_json:
         print_json(
@@ -240,8 +260,10 @@ def _report_touch(
         )
         return
     if len(sides) > 1:
-        text += f", {eccentricity:g} steps out of centre"
-    click.echo(f"{text}; the readings differ by {spread} steps at most")
+        text += _(", {eccentricity:g} steps out of centre").format(eccentricity=eccentricity)
+    click.echo(
+        _("{text}; the readings differ by {spread} steps at most").format(text=text, spread=spread)
+    )
 
 
 VERBS = (jog, goto, touch_work)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from tornillo.commands.completion import complete_parts
 from tornillo.commands.connection import (
     connected,
     json_option,
@@ -14,7 +15,9 @@ from tornillo.commands.connection import (
     print_json,
     print_table,
 )
+from tornillo.commands.progress import busy
 from tornillo.errors import ChipError, PartError, TornilloError
+from tornillo.language import _, plural
 from tornillo.machine import Machine
 from tornillo.part import Part
 from tornillo.part_writer import part_text
@@ -24,46 +27,79 @@ from tornillo.stored import units_of
 from tornillo.toml_lines import Place
 
 file_argument = click.argument("file", type=click.Path(dir_okay=False))
-part_argument = click.argument("part")
+part_argument = click.argument("part", shell_complete=complete_parts)
 
 
 @click.command()
 @file_argument
+@json_option
 @machine_option
-def check(file: str, machine: str) -> None:
+def check(file: str, as_json: bool, machine: str) -> None:
     """Say whether FILE can be made, and what is wrong with it.
 
     \b
-    Example: tornillo check examples/test-bar.toml
+    Examples: tornillo check examples/test-bar.toml
+              tornillo check examples/test-bar.toml --json
     """
     part = Part.load(file)
     known = Machine.load(machine)
-    problems = list(part.problems(known))
+    with busy(_("checking")):
+        problems = list(part.problems(known))
+    if as_json:
+        _print_verdict(part, known, problems)
+        return
     for problem in problems[:-1]:
-        click.secho(f"Error: {problem}", fg="red", err=True)
-        click.echo(f"Try: {problem.remedy}", err=True)
+        click.secho(_("Error: {problem}").format(problem=problem), fg="red", err=True)
+        click.echo(_("Try: {remedy}").format(remedy=problem.remedy), err=True)
     if problems:
         raise problems[-1]
     size = len(part.image(known))
     count = len(part.operations)
-    noun = "operation" if count == 1 else "operations"
-    click.echo(f"{part.name}: {count} {noun}, {size} bytes, fits {known.name}")
+    noun = plural("{count} operation", "{count} operations", count).format(count=count)
+    click.echo(
+        _("{part}: {noun}, {size} bytes, fits {known}").format(
+            part=part.name, noun=noun, size=size, known=known.name
+        )
+    )
     for note in part.notes(known):
-        click.echo(f"Note: {note}")
+        click.echo(_("Note: {note}").format(note=note))
+
+
+def _print_verdict(part: Part, known: Machine, problems: list[PartError]) -> None:
+    """What `check` found, for scripts; exits with 1 when there are problems."""
+    print_json(
+        {
+            "name": part.name,
+            "machine": known.name,
+            "operations": len(part.operations),
+            "bytes": None if problems else len(part.image(known)),
+            "problems": [
+                {"message": str(problem), "remedy": problem.remedy} for problem in problems
+            ],
+            "notes": [] if problems else list(part.notes(known)),
+        }
+    )
+    if problems:
+        sys.exit(1)
 
 
 @click.command()
 @file_argument
-def upload(file: str) -> None:
+@json_option
+def upload(file: str, as_json: bool) -> None:
     """Check FILE, store it in the lathe and verify what was stored.
 
+    Interrupted by Ctrl-C or a pulled cable, nothing is stored, and what was there stays.
+
     \b
-    Example: tornillo upload examples/test-bar.toml
+    Examples: tornillo upload examples/test-bar.toml
+              tornillo upload examples/test-bar.toml --json
     """
     part = Part.load(file)
     with connected() as lathe:
-        image = part.image(lathe.machine())
-        label = f"Uploading {part.name}"
+        with busy(_("checking")):
+            image = part.image(lathe.machine())
+        label = _("Uploading {part}").format(part=part.name)
         with click.progressbar(length=len(image), label=label, file=sys.stderr) as bar:
             done = 0
 
@@ -76,7 +112,14 @@ def upload(file: str) -> None:
                 slot = lathe.upload(image, advance)
             except ChipError as error:
                 raise _with_the_line(part, error) from error
-    click.echo(f"{part.name} is stored in slot {slot}, {len(image)} bytes, verified")
+    if as_json:
+        print_json({"name": part.name, "slot": slot, "bytes": len(image), "verified": True})
+        return
+    click.echo(
+        _("{part} is stored in slot {slot}, {image} bytes, verified").format(
+            part=part.name, slot=slot, image=len(image)
+        )
+    )
 
 
 def _with_the_line(part: Part, error: ChipError) -> TornilloError:
@@ -88,9 +131,11 @@ def _with_the_line(part: Part, error: ChipError) -> TornilloError:
     if error.operation:
         place = ("operation", part.ordered[error.operation - 1].position)
         what = f"{part.describe(error.operation)}: "
-    cause = REFUSAL_TEXTS[error.reason].cause
+    cause = _(REFUSAL_TEXTS[error.reason].cause)
     refusal: PartError = part.source.error(
-        place, f"{what}the chip refuses the part: {cause}", error.remedy
+        place,
+        _("{what}the chip refuses the part: {cause}").format(what=what, cause=cause),
+        error.remedy,
     )
     return refusal
 
@@ -109,22 +154,28 @@ def list_parts(as_json: bool) -> None:
     if as_json:
         print_json([{**dataclasses.asdict(part), "units": part.units} for part in stored])
     elif not stored:
-        click.echo(f"no parts stored, all {slots} units of the store are free")
+        click.echo(
+            _("no parts stored, all {slots} units of the store are free").format(slots=slots)
+        )
     else:
         print_table(
             {
-                "slot": part.slot,
-                "part": part.name,
-                "operations": part.operations,
-                "bytes": part.length,
-                "units": part.units,
-                "": "selected" if part.selected else "",
+                _("slot"): part.slot,
+                _("part"): part.name,
+                _("operations"): part.operations,
+                _("bytes"): part.length,
+                _("units"): part.units,
+                "": _("selected") if part.selected else "",
             }
             for part in stored
         )
         free = slots - sum(part.units for part in stored)
         most = units_of(PART_IMAGE_MAX)
-        click.echo(f"{free} of {slots} units of the store are free; a part takes 1 to {most}")
+        click.echo(
+            _("{free} of {slots} units of the store are free; a part takes 1 to {most}").format(
+                free=free, slots=slots, most=most
+            )
+        )
 
 
 @click.command()
@@ -154,9 +205,12 @@ def download(part: str, output: str | None) -> None:
         Path(output).write_text(text, encoding="utf-8")
     except OSError as error:
         raise PartError(
-            f"{output}: the file cannot be written: {error.strerror}", "choose another place"
+            _("{output}: the file cannot be written: {strerror}").format(
+                output=output, strerror=error.strerror
+            ),
+            _("choose another place"),
         ) from error
-    click.echo(f"{found.name} is written to {output}")
+    click.echo(_("{found} is written to {output}").format(found=found.name, output=output))
 
 
 @click.command()
@@ -170,7 +224,7 @@ def select(part: str) -> None:
     with connected() as lathe:
         found = lathe.find(part)
         lathe.select(found.slot)
-    click.echo(f"{found.name} is selected: the RUN button cuts it")
+    click.echo(_("{found} is selected: the RUN button cuts it").format(found=found.name))
 
 
 @click.command()
@@ -184,12 +238,11 @@ def delete(part: str) -> None:
     with connected() as lathe:
         found = lathe.find(part)
         lathe.delete(found.slot)
-    click.echo(f"{found.name} is deleted, {_units(found.units)} free again")
-
-
-def _units(count: int) -> str:
-    """A number of units that are something."""
-    return f"{count} {'unit is' if count == 1 else 'units are'}"
+    count = found.units
+    freed = plural("{count} unit is free again", "{count} units are free again", count)
+    click.echo(
+        _("{found} is deleted, {text}").format(found=found.name, text=freed.format(count=count))
+    )
 
 
 VERBS = (check, upload, download, list_parts, select, delete)

@@ -5,15 +5,33 @@ import dataclasses
 
 import click
 
+from tornillo.commands.completion import complete_parts
 from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.commands.following import describe, follow_homing, follow_run, pause_message
 from tornillo.errors import ChipError, TornilloError
+from tornillo.language import _, later
 from tornillo.lathe import Lathe
 from tornillo.protocol import Axis, ErrorCode, HomedAxis, ProgressData, State, StatusFlag
 from tornillo.protocol_texts import ALARM_TEXTS
 from tornillo.status import Status
 
 NM_PER_MM = 1_000_000
+#: The labels of `status`.
+LABELS = (
+    later("state"),
+    later("alarm"),
+    later("tool"),
+    later("machine"),
+    later("dead steps"),
+    later("warning"),
+    later("unfinished"),
+    later("part"),
+    later("progress"),
+    later("waits for"),
+    later("pressed"),
+    later("firmware"),
+    later("last start"),
+)
 follow_option = click.option("--follow", is_flag=True, help="Show the progress until the end.")
 
 
@@ -35,12 +53,12 @@ def home(axis: str | None) -> None:
     axes = HomedAxis.X | HomedAxis.Z if axis is None else HomedAxis[axis.upper()]
     with connected() as lathe:
         lathe.home(axes)
-        what = "X first" if axis is None else f"{axis.upper()} alone"
-        click.echo(f"homing, {what}; Ctrl-C stops", err=True)
+        what = _("X first") if axis is None else _("{axis} alone").format(axis=axis.upper())
+        click.echo(_("homing, {what}; Ctrl-C stops").format(what=what), err=True)
         status = follow_homing(lathe)
-    click.echo(f"homed; {_dead_steps(status, axes)}")
+    click.echo(_("homed; {status}").format(status=_dead_steps(status, axes)))
     for line in status.advice:
-        click.secho(f"Warning: {line}", fg="yellow", err=True)
+        click.secho(_("Warning: {line}").format(line=line), fg="yellow", err=True)
 
 
 def _dead_steps(status: Status, axes: HomedAxis) -> str:
@@ -50,13 +68,13 @@ def _dead_steps(status: Status, axes: HomedAxis) -> str:
         HomedAxis.Z: (status.dead_z, status.spread_z),
     }
     some = {axis.name: found[axis] for axis in HomedAxis if axis in axes}
-    dead = ", ".join(f"{name} {steps}" for name, (steps, _) in some.items())
-    spread = ", ".join(f"{name} {steps}" for name, (_, steps) in some.items())
-    return f"dead steps: {dead}; spread: {spread}"
+    dead = ", ".join(f"{name} {steps}" for name, (steps, _spread) in some.items())
+    spread = ", ".join(f"{name} {steps}" for name, (_dead, steps) in some.items())
+    return _("dead steps: {dead}; spread: {spread}").format(dead=dead, spread=spread)
 
 
 @click.command()
-@click.argument("part", required=False)
+@click.argument("part", required=False, shell_complete=complete_parts)
 @click.option("--step", is_flag=True, help="Pause after each operation.")
 @click.option("--resume", is_flag=True, help="Go on with the part that was not finished.")
 @follow_option
@@ -82,7 +100,7 @@ def run(part: str | None, step: bool, resume: bool, follow: bool) -> None:
             raise
         begun = lathe.progress() if resume else None
         if begun is not None:
-            click.echo(f"going on behind {_completed(begun)}", err=True)
+            click.echo(_("going on behind {begun}").format(begun=_completed(begun)), err=True)
         _started(lathe, follow)
 
 
@@ -91,16 +109,20 @@ def _refuse_outdated(lathe: Lathe) -> None:
     names = ", ".join(part.name for part in lathe.outdated_parts())
     if names:
         raise TornilloError(
-            f"the step size was changed since these parts were stored: {names}",
-            "upload them again, so that they fit the screws",
+            _("the step size was changed since these parts were stored: {names}").format(
+                names=names
+            ),
+            _("upload them again, so that they fit the screws"),
         )
 
 
 def _completed(begun: ProgressData) -> str:
     """How far a part came."""
     if begun.pass_number == 0:
-        return f"operation {begun.operation}"
-    return f"operation {begun.operation}, pass {begun.pass_number}"
+        return _("operation {operation}").format(operation=begun.operation)
+    return _("operation {operation}, pass {pass_number}").format(
+        operation=begun.operation, pass_number=begun.pass_number
+    )
 
 
 @click.command()
@@ -112,7 +134,7 @@ def hold() -> None:
     """
     with connected() as lathe:
         lathe.hold()
-    click.echo("held; go on with `tornillo resume`, give up with `tornillo stop`")
+    click.echo(_("held; go on with `tornillo resume`, give up with `tornillo stop`"))
 
 
 @click.command()
@@ -140,7 +162,7 @@ def override(percent: int) -> None:
     """
     with connected() as lathe:
         lathe.override(percent)
-    click.echo(f"feed now {percent} %; back with `tornillo override 100`")
+    click.echo(_("feed now {percent} %; back with `tornillo override 100`").format(percent=percent))
 
 
 def _started(lathe: Lathe, follow: bool) -> None:
@@ -149,7 +171,7 @@ def _started(lathe: Lathe, follow: bool) -> None:
         follow_run(lathe)
         click.echo("finished")
     else:
-        click.echo("running; see `tornillo status`, hold with `tornillo hold`")
+        click.echo(_("running; see `tornillo status`, hold with `tornillo hold`"))
 
 
 @click.command()
@@ -176,7 +198,7 @@ def reset() -> None:
         status = lathe.status()
     if status.state is State.ALARM:
         raise status.alarm_error()
-    click.echo("no alarm" if status.homed else "no alarm; home next: `tornillo home`")
+    click.echo(_("no alarm") if status.homed else _("no alarm; home next: `tornillo home`"))
 
 
 @click.command()
@@ -192,9 +214,9 @@ def status(as_json: bool) -> None:
         begun = lathe.progress()
         names = {part.slot: part.name for part in lathe.parts()}
         if as_json:
-            print_json(_as_json(lathe, now, begun, names))
+            print_json(status_json(lathe, now, begun, names))
             return
-        rows = _as_rows(lathe, now, begun, names)
+        rows = {_(name): value for name, value in _as_rows(lathe, now, begun, names).items()}
     width = max(len(name) for name in rows)
     for name, value in rows.items():
         click.echo(f"{name:<{width}}  {value}")
@@ -207,7 +229,7 @@ def _position_mm(lathe: Lathe, now: Status) -> tuple[float, float]:
     return 2 * radius, (now.z - hello.zero_z) * hello.step_z_nm / NM_PER_MM
 
 
-def _as_json(
+def status_json(
     lathe: Lathe, now: Status, begun: ProgressData | None, names: dict[int, str]
 ) -> dict[str, object]:
     """Everything known, for scripts."""
@@ -239,38 +261,46 @@ def _as_rows(
     lathe: Lathe, now: Status, begun: ProgressData | None, names: dict[int, str]
 ) -> dict[str, str]:
     """What a person wants to know."""
-    rows = {"state": now.state.name.lower()}
+    rows = {"state": _(now.state.name.lower())}
     if now.state is State.ALARM:
-        rows["alarm"] = f"{now.alarm_error()}; {ALARM_TEXTS[now.alarm].remedy}"
+        rows["alarm"] = f"{now.alarm_error()}; {_(ALARM_TEXTS[now.alarm].remedy)}"
     if now.homed:
         diameter, z = _position_mm(lathe, now)
-        rows["tool"] = f"diameter {diameter:.3f} mm, z {z:.3f} mm"
+        rows["tool"] = _("diameter {diameter:.3f} mm, z {z:.3f} mm").format(diameter=diameter, z=z)
     else:
-        some = f", only {now.homed_axes.name}" if now.homed_axes else ""
-        rows["tool"] = f"unknown: not homed{some}"
-    rows["machine"] = f"X {now.x}, Z {now.z} steps"
-    rows["dead steps"] = (
-        f"X {now.dead_x}, Z {now.dead_z}; spread X {now.spread_x}, Z {now.spread_z}"
+        some = (
+            _(", only {homed_axes}").format(homed_axes=now.homed_axes.name)
+            if now.homed_axes
+            else ""
+        )
+        rows["tool"] = _("unknown: not homed{some}").format(some=some)
+    rows["machine"] = _("X {x}, Z {z} steps").format(x=now.x, z=now.z)
+    rows["dead steps"] = _("X {dead_x}, Z {dead_z}; spread X {spread_x}, Z {spread_z}").format(
+        dead_x=now.dead_x, dead_z=now.dead_z, spread_x=now.spread_x, spread_z=now.spread_z
     )
     if now.warnings:
         rows["warning"] = "; ".join(now.advice)
     if now.slot is not None:
-        rows["part"] = f"{names.get(now.slot, '?')} (slot {now.slot})"
+        rows["part"] = _("{slot} (slot {slot2})").format(
+            slot=names.get(now.slot, "?"), slot2=now.slot
+        )
     if now.under_way:
         rows["progress"] = f"{now.permille / 10:.1f} %, {describe(now)}"
     elif begun is not None:
         name = names.get(begun.slot, "?")
-        rows["unfinished"] = (
-            f"{name}, completed up to {_completed(begun)}; home, then `tornillo run --resume`"
-        )
+        rows["unfinished"] = _(
+            "{name}, completed up to {begun}; home, then `tornillo run --resume`"
+        ).format(name=name, begun=_completed(begun))
     if now.state is State.PAUSE:
-        rows["waits for"] = f"{pause_message(lathe, now)}; go on with RUN or `tornillo resume`"
+        rows["waits for"] = _("{lathe}; go on with RUN or `tornillo resume`").format(
+            lathe=pause_message(lathe, now)
+        )
     pressed = [
         text
         for flag, text in (
-            (StatusFlag.ESTOP, "emergency stop"),
-            (StatusFlag.SWITCH_X, f"limit switch {Axis.X.name}"),
-            (StatusFlag.SWITCH_Z, f"limit switch {Axis.Z.name}"),
+            (StatusFlag.ESTOP, _("emergency stop")),
+            (StatusFlag.SWITCH_X, _("limit switch {x}").format(x=Axis.X.name)),
+            (StatusFlag.SWITCH_Z, _("limit switch {z}").format(z=Axis.Z.name)),
             (StatusFlag.BUTTON_RUN, "RUN"),
             (StatusFlag.BUTTON_HOLD, "HOLD"),
             (StatusFlag.BUTTON_STOP, "STOP"),
@@ -278,11 +308,13 @@ def _as_rows(
         if flag in now.flags
     ]
     if now.contact:
-        pressed.append("contact sensor")
+        pressed.append(_("contact sensor"))
     if pressed:
         rows["pressed"] = ", ".join(pressed)
-    rows["firmware"] = f"{lathe.firmware}, serial number {lathe.serial_number}"
-    rows["last start"] = now.reset_cause.name.lower().replace("_", "-")
+    rows["firmware"] = _("{firmware}, serial number {serial_number}").format(
+        firmware=lathe.firmware, serial_number=lathe.serial_number
+    )
+    rows["last start"] = _(now.reset_cause.name.lower().replace("_", "-"))
     return rows
 
 

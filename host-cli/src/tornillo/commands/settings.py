@@ -6,8 +6,10 @@ from pathlib import Path
 
 import click
 
+from tornillo.commands.completion import complete_settings
 from tornillo.commands.connection import connected, json_option, print_json, print_table
 from tornillo.errors import TornilloError
+from tornillo.language import _
 from tornillo.lathe import Lathe
 from tornillo.machine_file import file_text, load_file
 from tornillo.protocol import Axis
@@ -48,7 +50,7 @@ def settings(context: click.Context, as_json: bool) -> None:
             "unit": entry.unit,
             "minimum": data.minimum,
             "maximum": data.maximum,
-            "meaning": entry.meaning,
+            "meaning": _(entry.meaning),
         }
         for entry, data in found
     ]
@@ -59,9 +61,13 @@ def settings(context: click.Context, as_json: bool) -> None:
 
 
 @settings.command("get")
-@click.argument("name")
+@click.argument("name", shell_complete=complete_settings)
 def get_setting(name: str) -> None:
-    """Print the value of NAME alone; meaning, range and unit go to stderr."""
+    """Print the value of NAME alone; meaning, range and unit go to stderr.
+
+    \b
+    Example: tornillo settings get travel_z
+    """
     entry = named(name)
     with connected() as lathe:
         told = lathe.setting(entry.id)
@@ -70,16 +76,22 @@ def get_setting(name: str) -> None:
 
 
 @settings.command("set", context_settings={"ignore_unknown_options": True})
-@click.argument("name")
+@click.argument("name", shell_complete=complete_settings)
 @click.argument("value")
 def set_setting(name: str, value: str) -> None:
-    """Change NAME to VALUE, a whole number, and store it in the lathe."""
+    """Change NAME to VALUE, a whole number, and store it in the lathe.
+
+    \b
+    Example: tornillo settings set rapid_rate_x 900
+    """
     entry = named(name)
     try:
         number = int(value)
     except ValueError as error:
         raise click.BadParameter(
-            f"{value} is no whole number; {entry.id.name.lower()} goes from {span(entry)}",
+            _("{value} is no whole number; {id} goes from {entry}").format(
+                value=value, id=entry.id.name.lower(), entry=span(entry)
+            ),
             param_hint="VALUE",
         ) from error
     with connected() as lathe:
@@ -100,15 +112,22 @@ def save_settings(file: Path, force: bool) -> None:
     Example: tornillo settings save my-lathe.toml
     """
     if file.exists() and not force:
-        raise TornilloError(f"{file} is there already", "name another file, or add --force")
+        raise TornilloError(
+            _("{file} is there already").format(file=file), _("name another file, or add --force")
+        )
     with connected() as lathe:
         values = {entry.id: data.value for entry, data in lathe.settings()}
-        source = f"read from lathe {lathe.serial_number}, firmware {lathe.firmware}"
+        source = _("read from lathe {serial_number}, firmware {firmware}").format(
+            serial_number=lathe.serial_number, firmware=lathe.firmware
+        )
     try:
         file.write_text(file_text(values, file.stem, source), encoding="utf-8")
     except OSError as error:
-        raise TornilloError(f"cannot write {file}: {error}", "choose another place") from error
-    click.echo(f"{len(values)} settings saved in {file}")
+        raise TornilloError(
+            _("cannot write {file}: {error}").format(file=file, error=error),
+            _("choose another place"),
+        ) from error
+    click.echo(_("{values} settings saved in {file}").format(values=len(values), file=file))
 
 
 @settings.command("load")
@@ -125,7 +144,11 @@ def load_settings(file: str) -> None:
     values = load_file(file)
     with connected() as lathe:
         changes = store_all(lathe, values, click.echo)
-        click.echo(f"{len(values)} settings of {file}: {len(changes)} changed and stored")
+        click.echo(
+            _("{values} settings of {file}: {changes} changed and stored").format(
+                values=len(values), file=file, changes=len(changes)
+            )
+        )
         _warn_of_parts(lathe, changes)
 
 
@@ -134,7 +157,9 @@ def _warn_of_parts(lathe: Lathe, changes: list[Change]) -> None:
     names = outdated_parts(lathe, changes)
     if names:
         click.echo(
-            f"made for another step size, refused until uploaded again: {', '.join(names)}",
+            _("made for another step size, refused until uploaded again: {names}").format(
+                names=", ".join(names)
+            ),
             err=True,
         )
 
@@ -155,7 +180,7 @@ def zero() -> None:
 def finite(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
     """Refuse nan and inf."""
     if value is not None and not math.isfinite(value):
-        raise click.BadParameter("must be an ordinary number")
+        raise click.BadParameter(_("must be an ordinary number"))
     return value
 
 
@@ -169,22 +194,30 @@ def finite(_context: click.Context, _option: click.Parameter, value: float | Non
 )
 @units_option
 def zero_x(diameter: float, units: str) -> None:
-    """The tool touches this diameter."""
+    """The tool touches this diameter.
+
+    \b
+    Example: tornillo zero x --diameter 25.4
+    """
     with connected() as lathe:
         scale = Scale(units, lathe.machine())
         lathe.zero(Axis.X, scale.radius_steps(diameter))
-    click.echo(f"X: the tool stands at diameter {scale.show(diameter)}")
+    click.echo(_("X: the tool stands at diameter {diameter}").format(diameter=scale.show(diameter)))
 
 
 @zero.command("z")
 @click.option("--at", type=float, required=True, callback=finite, help="z where the tool stands.")
 @units_option
 def zero_z(at: float, units: str) -> None:
-    """The tool stands at this z; 0 is the finished front face."""
+    """The tool stands at this z; 0 is the finished front face.
+
+    \b
+    Example: tornillo zero z --at 0 --units inch
+    """
     with connected() as lathe:
         scale = Scale(units, lathe.machine())
         lathe.zero(Axis.Z, scale.z_steps(at))
-    click.echo(f"Z: the tool stands at z = {scale.show(at)}")
+    click.echo(_("Z: the tool stands at z = {at}").format(at=scale.show(at)))
 
 
 VERBS = (settings, zero)

@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from tornillo import udev as udev_rule
-from tornillo.commands.connection import connected
+from tornillo.commands.connection import connected, json_option, print_json
+from tornillo.language import _
 from tornillo.protocol import SERIAL_LENGTH
 
 #: Letters and digits that are not taken for one another.
@@ -18,7 +19,8 @@ PREFIX = "TN"
 @click.command()
 @click.argument("new", required=False)
 @click.option("--random", "at_random", is_flag=True, help="Choose a new number at random.")
-def serial(new: str | None, at_random: bool) -> None:
+@json_option
+def serial(new: str | None, at_random: bool, as_json: bool) -> None:
     """Show the serial number of the lathe, or change it to NEW (8 characters).
 
     With numbers of their own several lathes can be told apart: `tornillo --port NUMBER ...`.
@@ -29,17 +31,21 @@ def serial(new: str | None, at_random: bool) -> None:
               tornillo serial --random
     """
     if new is not None and at_random:
-        raise click.UsageError("give either a number or --random")
+        raise click.UsageError(_("give either a number or --random"))
     if at_random:
         new = random_number()
     with connected() as lathe:
         old = lathe.serial_number
-        if new is None:
-            click.echo(old)
-            return
-        lathe.set_serial_number(new)
-    click.echo(f"serial number was {old}, is {new}")
-    click.echo("the computer sees it when the cable is plugged in again", err=True)
+        if new is not None:
+            lathe.set_serial_number(new)
+    if as_json:
+        print_json({"serial_number": new or old, "before": old})
+        return
+    if new is None:
+        click.echo(old)
+        return
+    click.echo(_("serial number was {old}, is {new}").format(old=old, new=new))
+    click.echo(_("the computer sees it when the cable is plugged in again"), err=True)
 
 
 def random_number() -> str:
@@ -69,7 +75,7 @@ def udev(install: bool, root: Path) -> None:
         click.echo(udev_rule.rule(), nl=False)
         return
     path = udev_rule.install(root)
-    click.echo(f"{path} written; unplug the lathe and plug it in again")
+    click.echo(_("{path} written; unplug the lathe and plug it in again").format(path=path))
 
 
 VERBS = (serial, udev)

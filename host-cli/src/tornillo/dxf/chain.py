@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from tornillo.dxf.curves import Point, Segment
 from tornillo.dxf.paper import Mark, Paper, number
 from tornillo.errors import DrawingError
+from tornillo.language import _
 
 SAME = 1e-6
 SHOWN = 3
@@ -102,7 +103,7 @@ def _snap_loose_ends(ends: Ends, paper: Paper) -> None:
             gap = math.dist(ends.places[first], ends.places[second])
             if gap <= paper.snap:
                 pairs.append((gap, first, second))
-    for _, first, second in sorted(pairs):
+    for _gap, first, second in sorted(pairs):
         alone = len(ends.members[first]) == len(ends.members[second]) == 1
         if alone and ends.members[first][0][0] != ends.members[second][0][0]:
             ends.merge(first, second)
@@ -133,13 +134,14 @@ def _walk(ends: Ends, index: int, side: int, used: set[int]) -> Iterator[Segment
 
 def _branch(ends: Ends, node: int, paper: Paper) -> DrawingError:
     """The refusal of a place where more than two pieces meet."""
-    names = [str(ends.segments[index].origin) for index, _ in ends.members[node]]
+    names = [str(ends.segments[index].origin) for index, _side in ends.members[node]]
     place = ends.places[node]
     return DrawingError(
-        f"{paper.file}: the outline branches at {paper.show(place)}: "
-        f"{len(names)} pieces meet there: {_listed(names)}",
-        "leave only the outline: take its layer with --layer, or delete inner lines",
-        (paper.mark(place, f"{len(names)} pieces meet"),),
+        _("{file}: the outline branches at {place}: {names} pieces meet there: {names2}").format(
+            file=paper.file, place=paper.show(place), names=len(names), names2=_listed(names)
+        ),
+        _("leave only the outline: take its layer with --layer, or delete inner lines"),
+        (paper.mark(place, _("{names} pieces meet").format(names=len(names))),),
     )
 
 
@@ -151,21 +153,30 @@ def _broken(chains: list[list[Segment]], paper: Paper) -> DrawingError:
     lines, marks = [], []
     for distance, (first, one), (second, other) in gaps[:SHOWN]:
         lines.append(
-            f"{paper.length(distance)} are missing between {paper.show(first)} ({one.origin}) "
-            f"and {paper.show(second)} ({other.origin})"
+            _("{distance} are missing between {first} ({origin}) and {second} ({origin2})").format(
+                distance=paper.length(distance),
+                first=paper.show(first),
+                origin=one.origin,
+                second=paper.show(second),
+                origin2=other.origin,
+            )
         )
         marks += [
-            paper.mark(first, f"gap of {paper.length(distance)}"),
+            paper.mark(first, _("gap of {distance}").format(distance=paper.length(distance))),
             paper.mark(second, ""),
         ]
     smallest = gaps[0][0]
-    remedy = "draw what is missing, or choose the outline's layer with --layer"
+    remedy = _("draw what is missing, or choose the outline's layer with --layer")
     if smallest <= NEAR * paper.snap:
         wanted = number(SNAP_ROOM * gaps[0][0] * paper.factor, 6)
-        remedy = f"join the ends in the drawing, or bridge them with --snap {wanted}"
+        remedy = _("join the ends in the drawing, or bridge them with --snap {wanted}").format(
+            wanted=wanted
+        )
     count = len(chains)
     return DrawingError(
-        f"{paper.file}: the outline breaks into {count} parts: {'; '.join(lines)}",
+        _("{file}: the outline breaks into {count} parts: {lines}").format(
+            file=paper.file, count=count, lines="; ".join(lines)
+        ),
         remedy,
         tuple(marks),
     )
@@ -193,16 +204,21 @@ def _separate(chains: list[list[Segment]], paper: Paper) -> DrawingError:
     """The refusal of a closed figure beside the outline."""
     shortest = min(chains, key=lambda chain: sum(piece.length for piece in chain))
     first = shortest[0]
-    marks: tuple[Mark, ...] = (paper.mark(first.point(0.5), "a separate figure"),)
+    marks: tuple[Mark, ...] = (paper.mark(first.point(0.5), _("a separate figure")),)
     return DrawingError(
-        f"{paper.file}: {len(chains)} separate figures are drawn; one of them is {first.origin} "
-        f"at {paper.show(first.start)}",
-        "choose the outline's layer with --layer, or delete the other figures",
+        _("{file}: {chains} separate figures are drawn; one of them is {origin} at {start}").format(
+            file=paper.file, chains=len(chains), origin=first.origin, start=paper.show(first.start)
+        ),
+        _("choose the outline's layer with --layer, or delete the other figures"),
         marks,
     )
 
 
 def _listed(names: list[str]) -> str:
     """Names for a sentence, not too many."""
-    shown = names if len(names) <= SHOWN + 1 else [*names[:SHOWN], f"{len(names) - SHOWN} more"]
+    shown = (
+        names
+        if len(names) <= SHOWN + 1
+        else [*names[:SHOWN], _("{names} more").format(names=len(names) - SHOWN)]
+    )
     return ", ".join(shown)

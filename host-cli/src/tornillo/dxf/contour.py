@@ -13,6 +13,7 @@ from tornillo.dxf.options import Tool, View
 from tornillo.dxf.paper import Paper, number
 from tornillo.dxf.section import LOWER, Half
 from tornillo.errors import DrawingError
+from tornillo.language import _
 
 RIGHT, LEFT = "right", "left"
 SLACK_DEGREES = 0.05
@@ -59,7 +60,7 @@ def profile(chain: list[Segment], half: Half, view: View, paper: Paper, tool: To
     remarks = []
     if chain[0].start == chain[-1].end:
         chain = _outside(chain, half, paper)
-        remarks.append("the outer side of the closed figure is turned, not its bore")
+        remarks.append(_("the outer side of the closed figure is turned, not its bore"))
     free_end = view.free_end if view.free_end != "auto" else _free_end(chain, half, paper)
     if view.mirror:
         free_end = LEFT if free_end == RIGHT else RIGHT
@@ -82,7 +83,11 @@ def profile(chain: list[Segment], half: Half, view: View, paper: Paper, tool: To
 
     if sign * ends[0] < sign * ends[1]:
         chain = [segment.reversed() for segment in reversed(chain)]
-    remarks.append(f"the free end is the {free_end} one, z = 0 at {paper.show_along(front)}")
+    remarks.append(
+        _("the free end is the {free_end} one, z = 0 at {front}").format(
+            free_end=free_end, front=paper.show_along(front)
+        )
+    )
     pieces = [segment.mapped(to_part, sign * side < 0) for segment in chain]
     place = Place(paper, to_drawing)
     return _finished(pieces, view, tool, place, remarks)
@@ -106,8 +111,15 @@ class Place:
         """The refusal of `segment` at a place of the part."""
         drawn = self.to_drawing(at)
         return DrawingError(
-            f"{self.paper.file}: {what}: {segment.origin}, at {self.paper.show(drawn)} "
-            f"(z {number(at[0])}, diameter {number(2 * at[1])} {self.paper.units})",
+            _("{file}: {what}: {origin}, at {drawn} (z {at}, diameter {number} {units})").format(
+                file=self.paper.file,
+                what=what,
+                origin=segment.origin,
+                drawn=self.paper.show(drawn),
+                at=number(at[0]),
+                number=number(2 * at[1]),
+                units=self.paper.units,
+            ),
             remedy,
             (self.paper.mark(drawn, mark),),
         )
@@ -119,17 +131,23 @@ def _finished(
     """Strip the faces, check that the tool can do it, and tidy up."""
     if view.length is not None:
         pieces = _shortened(pieces, view.length, place)
-        remarks.append(f"only the first {number(view.length)} {place.paper.units} are turned")
+        remarks.append(
+            _("only the first {length} {units} are turned").format(
+                length=number(view.length), units=place.paper.units
+            )
+        )
     pieces = _monotone(pieces, place)
     pieces, face = _without_front(pieces, place.tolerance)
     pieces, back = _without_back(pieces, place.tolerance)
     if back:
-        remarks.append("the flat back face is left to parting off")
+        remarks.append(_("the flat back face is left to parting off"))
     if not pieces:
         file = place.paper.file
         raise DrawingError(
-            f"{file}: only flat faces are drawn, nothing to turn along the spindle",
-            "check --spindle: the spindle runs along the drawing's x, or y when said so",
+            _("{file}: only flat faces are drawn, nothing to turn along the spindle").format(
+                file=file
+            ),
+            _("check --spindle: the spindle runs along the drawing's x, or y when said so"),
         )
     fall = _check_slopes(pieces, tool, place)
     tidy = [
@@ -188,9 +206,15 @@ def _shortened(pieces: list[Segment], length: float, place: Place) -> list[Segme
                 return kept or [piece]
             kept.append(piece)
     raise DrawingError(
-        f"{place.paper.file}: the outline ends at z {number(pieces[-1].end[0])} "
-        f"{place.paper.units}, before the wanted length of {number(length)}",
-        "leave --length out, or give a smaller one",
+        _(
+            "{file}: the outline ends at z {end} {units}, before the wanted length of {length}"
+        ).format(
+            file=place.paper.file,
+            end=number(pieces[-1].end[0]),
+            units=place.paper.units,
+            length=number(length),
+        ),
+        _("leave --length out, or give a smaller one"),
     )
 
 
@@ -203,10 +227,15 @@ def _monotone(pieces: list[Segment], place: Place) -> list[Segment]:
             raise place.refusal(
                 segment,
                 segment.start,
-                "the outline runs back towards the free end, where no tool from this side reaches",
+                _(
+                    "the outline runs back towards the free end, where no tool from this side "
+                    "reaches"
+                ),
                 "overhang",
-                "turn the part round with --free-end, stop in front of it with --length, or cut "
-                "it in two set-ups",
+                _(
+                    "turn the part round with --free-end, stop in front of it with --length, "
+                    "or cut it in two set-ups"
+                ),
             )
         start = min(level, segment.start[0]), segment.start[1]
         level = min(level, segment.end[0])
@@ -264,13 +293,14 @@ def _check_slopes(pieces: list[Segment], tool: Tool, place: Place) -> float:
             limit = tool.steepest_fall if slope < 0 else tool.steepest_rise
             if abs(slope) <= limit + SLACK_DEGREES:
                 continue
-            way = "falls" if slope < 0 else "rises"
+            way = _("falls") if slope < 0 else _("rises")
             raise place.refusal(
                 segment,
                 at,
-                f"the outline {way} at {abs(slope):.1f} degrees, the tool {tool.name} follows "
-                f"{limit:.4g}",
-                f"{way} at {abs(slope):.1f} degrees",
+                _(
+                    "the outline {way} at {slope:.1f} degrees, the tool {tool} follows {limit:.4g}"
+                ).format(way=way, slope=abs(slope), tool=tool.name, limit=limit),
+                _("{way} at {slope:.1f} degrees").format(way=way, slope=abs(slope)),
                 _slope_remedy(slope, tool),
             )
     return steepest
@@ -280,13 +310,15 @@ def _slope_remedy(slope: float, tool: Tool) -> str:
     """What to do about a slope that is too steep."""
     needed = math.ceil(abs(slope))
     if (slope < 0) == (tool.hand != "left") and needed < QUARTER:
-        return f"take a tool that can, for example --back-clearance {needed}, or change the drawing"
+        return _(
+            "take a tool that can, for example --back-clearance {needed}, or change the drawing"
+        ).format(needed=needed)
     if slope < 0:
-        return (
-            "cut grooves as an operation of their own, stop in front of it with --length, or "
-            "turn the part round with --free-end"
+        return _(
+            "cut grooves as an operation of their own, stop in front of it with "
+            "--length, or turn the part round with --free-end"
         )
-    return "take a tool with another hand or --front-clearance, or change the drawing"
+    return _("take a tool with another hand or --front-clearance, or change the drawing")
 
 
 def _merged(pieces: list[Segment]) -> list[Segment]:

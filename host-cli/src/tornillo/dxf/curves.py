@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from tornillo.language import _
+
 Point = tuple[float, float]
 FULL_TURN = 2 * math.pi
 SAMPLES = 8
@@ -25,7 +27,9 @@ class Origin:
 
     def __str__(self) -> str:
         """As messages name it."""
-        return f"{self.kind} {self.handle} on layer {self.layer}"
+        return _("{kind} {handle} on layer {layer}").format(
+            kind=self.kind, handle=self.handle, layer=self.layer
+        )
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from tornillo.dxf.approximation import approximate
 from tornillo.dxf.curves import Origin, Point, Segment, bulged, steady
 from tornillo.errors import DrawingError, TornilloError
+from tornillo.language import _
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
@@ -53,27 +54,33 @@ def open_drawing(path: Path) -> "Drawing":
         from ezdxf.lldxf.const import DXFError
     except ImportError as error:
         raise TornilloError(
-            "reading drawings needs ezdxf", 'install it with `pip install "tornillo[dxf]"`'
+            _("reading drawings needs ezdxf"), _('install it with `pip install "tornillo[dxf]"`')
         ) from error
     try:
         with path.open("rb") as file:
             start = file.read(len(DWG_START))
     except OSError as error:
         raise DrawingError(
-            f"{path}: the drawing cannot be read: {error.strerror}", "check its name and place"
+            _("{path}: the drawing cannot be read: {strerror}").format(
+                path=path, strerror=error.strerror
+            ),
+            _("check its name and place"),
         ) from error
     if start == DWG_START:
         raise DrawingError(
-            f"{path}: this is a DWG file", "save it as DXF (ASCII, R12 or later) in the CAD program"
+            _("{path}: this is a DWG file").format(path=path),
+            _("save it as DXF (ASCII, R12 or later) in the CAD program"),
         )
     try:
         if not start:
-            raise ValueError("it is empty")
+            raise ValueError(_("it is empty"))
         return _load(path)
     except (OSError, ValueError, DXFError) as error:
         raise DrawingError(
-            f"{path}: this is not a DXF drawing, or it is damaged: {error}",
-            "export it again as DXF (ASCII, R12 or later)",
+            _("{path}: this is not a DXF drawing, or it is damaged: {error}").format(
+                path=path, error=error
+            ),
+            _("export it again as DXF (ASCII, R12 or later)"),
         ) from error
 
 
@@ -120,7 +127,7 @@ class Reader:
                 continue
             center_line = self._line_type(entity, origin.layer, CENTER_NAMES)
             if center_line:
-                found.left_out["centre line"] += 1
+                found.left_out[_("centre line")] += 1
                 found.center_lines += _pieces(entity, origin, tolerance, found.file)
                 continue
             found.layers[origin.layer] += 1
@@ -142,14 +149,14 @@ class Reader:
     def _hidden(self, entity: "DXFEntity", layer: str) -> str:
         """Why an entity is not part of what one sees; empty when it is."""
         if layer.upper() == CONSTRUCTION_LAYER:
-            return f"on layer {layer}"
-        if entity.dxf.get("invisible", 0):
-            return "invisible"
+            return _("on layer {layer}").format(layer=layer)
+        if entity.dxf.get(_("invisible"), 0):
+            return _("invisible")
         if layer in self.document.layers:
             settings = self.document.layers.get(layer)
             if settings.is_off() or settings.is_frozen():
-                return f"on layer {layer}, which is off or frozen"
-        return "hidden line" if self._line_type(entity, layer, HIDDEN_NAMES) else ""
+                return _("on layer {layer}, which is off or frozen").format(layer=layer)
+        return _("hidden line") if self._line_type(entity, layer, HIDDEN_NAMES) else ""
 
     def _line_type(self, entity: "DXFEntity", layer: str, names: tuple[str, ...]) -> bool:
         """Whether a line type starts with one of `names`."""
@@ -166,12 +173,16 @@ class Reader:
         if layers:
             wanted = ", ".join(sorted(self.wanted))
             return DrawingError(
-                f"{found.file}: nothing is drawn on layer {wanted}",
-                f"choose with --layer from: {layers}",
+                _("{file}: nothing is drawn on layer {wanted}").format(
+                    file=found.file, wanted=wanted
+                ),
+                _("choose with --layer from: {layers}").format(layers=layers),
             )
         return DrawingError(
-            f"{found.file}: there is nothing to turn in it; found: {others or 'no entities'}",
-            f"draw the outline in model space with {', '.join(KINDS)}",
+            _("{file}: there is nothing to turn in it; found: {value}").format(
+                file=found.file, value=others or _("no entities")
+            ),
+            _("draw the outline in model space with {kinds}").format(kinds=", ".join(KINDS)),
         )
 
 
@@ -185,7 +196,7 @@ def _expanded(
     reference: Any = entity
     for inner in reference.virtual_entities():
         layer = str(inner.dxf.get("layer", "0"))
-        kind = f"{inner.dxftype()} in block {reference.dxf.name}"
+        kind = _("{dxftype} in block {dxf}").format(dxftype=inner.dxftype(), dxf=reference.dxf.name)
         where = Origin(kind, origin.handle, origin.layer if layer == "0" else layer)
         yield from _expanded(inner, where, depth + 1)
 
@@ -195,8 +206,10 @@ def _pieces(entity: "DXFEntity", origin: Origin, tolerance: float, file: str) ->
     thing: Any = entity
     if not _is_flat(thing):
         raise DrawingError(
-            f"{file}: {origin} does not lie in the plane of the drawing",
-            "flatten the drawing, or draw the outline in the XY plane of the world",
+            _("{file}: {origin} does not lie in the plane of the drawing").format(
+                file=file, origin=origin
+            ),
+            _("flatten the drawing, or draw the outline in the XY plane of the world"),
         )
     kind = entity.dxftype()
     if kind == "LINE":
@@ -268,7 +281,10 @@ def _spline(thing: Any, origin: Origin, tolerance: float, file: str) -> list[Seg
         shape = thing.construction_tool()
     except (ValueError, DXFError) as error:
         raise DrawingError(
-            f"{file}: {origin} cannot be understood: {error}", "draw it again, or as arcs"
+            _("{file}: {origin} cannot be understood: {error}").format(
+                file=file, origin=origin, error=error
+            ),
+            _("draw it again, or as arcs"),
         ) from error
     knots = [float(knot) for knot in shape.knots()]
     first, last = knots[shape.degree], knots[-1 - shape.degree]

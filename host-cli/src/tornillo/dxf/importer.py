@@ -17,6 +17,7 @@ from tornillo.dxf.paper import Paper, number
 from tornillo.dxf.part_text import part_text, stock_for
 from tornillo.dxf.section import Half, take_half
 from tornillo.errors import DrawingError
+from tornillo.language import _
 from tornillo.machine import Machine
 from tornillo.units import NM_PER_UNIT
 
@@ -91,8 +92,8 @@ class Import:
         drawn = self.view.units or named
         if not drawn:
             raise DrawingError(
-                f"{self.path}: the drawing does not say its units ($INSUNITS)",
-                "say them with --units mm or --units inch",
+                _("{path}: the drawing does not say its units ($INSUNITS)").format(path=self.path),
+                _("say them with --units mm or --units inch"),
             )
         written = "inch" if drawn in INCH_FAMILY else "mm"
         factor = MM_PER[drawn] / (MM_PER_INCH if written == "inch" else 1.0)
@@ -124,37 +125,54 @@ class Import:
         if contour.length <= z_room and x_need <= x_room:
             return
         fits = min(z_room / contour.length, (x_room - stock.retract) / (stock.diameter / 2))
-        remedy = f"check the units (now {units.drawn}) with --units"
+        remedy = _("check the units (now {drawn}) with --units").format(drawn=units.drawn)
         if fits > 0:
             smaller = number(self.view.scale * fits, 2 if fits > 0.1 else 4)
-            remedy += f", or make the part smaller with --scale {smaller}"
+            remedy += _(", or make the part smaller with --scale {smaller}").format(smaller=smaller)
         raise DrawingError(
-            f"{self.path}: the part is {number(contour.length, 2)} {written} long and "
-            f"{number(contour.largest_diameter, 2)} {written} thick; {machine.name} reaches "
-            f"{number(z_room, 2)} {written} along and {number(x_room, 2)} {written} from the axis, "
-            "retract included",
+            _(
+                "{path}: the part is {length} {written} long and {largest_diameter} "
+                "{written} thick; {machine} reaches {z_room} {written} along and {x_room} "
+                "{written} from the axis, retract included"
+            ).format(
+                path=self.path,
+                length=number(contour.length, 2),
+                written=written,
+                largest_diameter=number(contour.largest_diameter, 2),
+                machine=machine.name,
+                z_room=number(z_room, 2),
+                x_room=number(x_room, 2),
+            ),
             remedy,
         )
 
     def _too_many(self, count: int) -> None:
         """Refuse a drawing that is not one outline."""
         raise DrawingError(
-            f"{self.path}: {count} lines and arcs are too many for an outline, at most "
-            f"{MOST_SEGMENTS}",
-            "choose the outline's layer with --layer, or a larger --tolerance for splines",
+            _(
+                "{path}: {count} lines and arcs are too many for an outline, at most "
+                "{most_segments}"
+            ).format(path=self.path, count=count, most_segments=MOST_SEGMENTS),
+            _("choose the outline's layer with --layer, or a larger --tolerance for splines"),
         )
 
     def _unit_remark(self, units: Units) -> str:
         """Where the units come from."""
-        source = "as said" if self.view.units else "from the drawing"
-        scale = "" if self.view.scale == 1 else f", scaled by {number(self.view.scale, 6)}"
-        return f"drawn in {units.drawn}, {source}{scale}"
+        source = _("as said") if self.view.units else _("from the drawing")
+        scale = (
+            ""
+            if self.view.scale == 1
+            else _(", scaled by {scale}").format(scale=number(self.view.scale, 6))
+        )
+        return _("drawn in {drawn}, {source}{scale}").format(
+            drawn=units.drawn, source=source, scale=scale
+        )
 
     def _left_out(self) -> list[str]:
         """What was drawn, too, but is not the outline."""
         assert self.reading is not None
         parts = [f"{count} {kind}" for kind, count in sorted(self.reading.left_out.items())]
-        return [f"left out: {', '.join(parts)}"] if parts else []
+        return [_("left out: {parts}").format(parts=", ".join(parts))] if parts else []
 
     def drawn(self) -> list[Segment]:
         """Everything read so far, as it is drawn."""
@@ -175,6 +193,8 @@ def _long(contour: Contour) -> list[str]:
     if size <= ROOM_BYTES:
         return []
     return [
-        f"the profile has {len(contour.segments)} pieces, perhaps too many for the lathe's memory: "
-        "a larger --tolerance makes fewer"
+        _(
+            "the profile has {segments} pieces, perhaps too many for the lathe's "
+            "memory: a larger --tolerance makes fewer"
+        ).format(segments=len(contour.segments))
     ]

@@ -10,8 +10,10 @@ from dataclasses import dataclass
 from tornillo.dxf.curves import Point, Segment
 from tornillo.dxf.paper import Paper
 from tornillo.errors import DrawingError
+from tornillo.language import _, later
 
 UPPER, LOWER, BOTH, MIXED = "upper", "lower", "both", "mixed"
+HALVES = {UPPER: later("upper half"), LOWER: later("lower half")}
 
 
 @dataclass(frozen=True)
@@ -39,20 +41,24 @@ def take_half(
     upper, lower = _split(segments, place, paper.snap)
     if not upper and not lower:
         raise DrawingError(
-            f"{paper.file}: everything drawn lies on the axis, {paper.show_level(place)}",
-            "say with --axis where the axis is",
+            _("{file}: everything drawn lies on the axis, {place}").format(
+                file=paper.file, place=paper.show_level(place)
+            ),
+            _("say with --axis where the axis is"),
         )
     if half == "auto" and upper and lower:
         _check_symmetry(upper, lower, place, paper)
-        return Half(place, UPPER, upper, f"full section, upper half taken; {why}")
+        return Half(place, UPPER, upper, _("full section, upper half taken; {why}").format(why=why))
     side = half if half != "auto" else (UPPER if upper else LOWER)
     pieces = upper if side == UPPER else lower
     if not pieces:
         raise DrawingError(
-            f"{paper.file}: nothing is drawn in the {side} half, axis at {paper.show_level(place)}",
-            f"leave --half {half} out, or say with --axis where the axis is",
+            _("{file}: nothing is drawn in the {side} half, axis at {place}").format(
+                file=paper.file, side=side, place=paper.show_level(place)
+            ),
+            _("leave --half {half} out, or say with --axis where the axis is").format(half=half),
         )
-    return Half(place, side, pieces, f"{side} half; {why}")
+    return Half(place, side, pieces, f"{_(HALVES[side])}; {why}")
 
 
 def _find_axis(
@@ -64,32 +70,37 @@ def _find_axis(
 ) -> tuple[float, str]:
     """The y of the axis and how it was found."""
     if axis is not None:
-        return axis, f"axis at {paper.show_level(axis)} as said"
+        return axis, _("axis at {axis} as said").format(axis=paper.show_level(axis))
     lengthwise = [line for line in center_lines if _is_level(line, paper.snap)]
     if lengthwise:
         longest = max(lengthwise, key=lambda line: line.length)
         place = longest.start[1]
-        return place, f"axis on the centre line at {paper.show_level(place)}"
+        return place, _("axis on the centre line at {place}").format(place=paper.show_level(place))
     low, high = _extent(segments)
     zero, middle = 0.0, (low + high) / 2
-    found = f"axis at {paper.show_level(zero)}"
+    found = _("axis at {zero}").format(zero=paper.show_level(zero))
     if half != "auto" and low < -paper.snap and high > paper.snap:
         return zero, found
     touches = min(abs(low), abs(high)) <= paper.snap
     if touches or _symmetric(segments, zero, paper):
         return zero, found
     if _symmetric(segments, middle, paper):
-        return middle, f"axis in the middle of the section, at {paper.show_level(middle)}"
+        return middle, _("axis in the middle of the section, at {middle}").format(
+            middle=paper.show_level(middle)
+        )
     if low > 0 or high < 0:
         return zero, found
     upper, lower = _split(segments, zero, paper.snap)
     if abs(middle) <= (high - low) / 4:
         _check_symmetry(upper, lower, zero, paper)
     raise DrawingError(
-        f"{paper.file}: the axis cannot be found: the drawing reaches from "
-        f"{paper.show_level(low)} to {paper.show_level(high)} and is not symmetric",
-        "draw a centre line, say where the axis is with --axis, or move it to "
-        f"{paper.show_level(zero)}",
+        _(
+            "{file}: the axis cannot be found: the drawing reaches from {low} to "
+            "{high} and is not symmetric"
+        ).format(file=paper.file, low=paper.show_level(low), high=paper.show_level(high)),
+        _("draw a centre line, say where the axis is with --axis, or move it to {zero}").format(
+            zero=paper.show_level(zero)
+        ),
     )
 
 
@@ -148,11 +159,25 @@ def _check_symmetry(upper: list[Segment], lower: list[Segment], axis: float, pap
         return
     side, other = ("upper", "lower") if place[1] > axis else ("lower", "upper")
     raise DrawingError(
-        f"{paper.file}: the halves above and below the axis ({paper.show_level(axis)}) differ by "
-        f"{paper.length(distance)}: {segment.origin}, at {paper.show(place)}, has no mirror image",
-        f"correct the {side} half, take one with --half {other} or --half {side}, or say with "
-        "--axis where the axis is",
-        (paper.mark(place, f"no mirror image, {paper.length(distance)} off"),),
+        _(
+            "{file}: the halves above and below the axis ({axis}) differ by "
+            "{distance}: {origin}, at {place}, has no mirror image"
+        ).format(
+            file=paper.file,
+            axis=paper.show_level(axis),
+            distance=paper.length(distance),
+            origin=segment.origin,
+            place=paper.show(place),
+        ),
+        _(
+            "correct the {side} half, take one with --half {other} or --half {side}, "
+            "or say with --axis where the axis is"
+        ).format(side=side, other=other),
+        (
+            paper.mark(
+                place, _("no mirror image, {distance} off").format(distance=paper.length(distance))
+            ),
+        ),
     )
 
 

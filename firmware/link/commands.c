@@ -26,6 +26,7 @@ uint8_t commands_reset_cause;
 
 static void put_u16(uint8_t at, uint16_t value)
 {
+    path_keep_up(); /* STATUS takes 2 ms, the step queue may last 3 */
     frame_response[at] = (uint8_t)value;
     frame_response[at + 1] = (uint8_t)(value >> 8);
 }
@@ -342,8 +343,7 @@ uint8_t commands_execute(void)
     case COMMAND_GOTO:
     case COMMAND_TOUCH:
         error = manual_begin(frame_code, get_i16(JOG_X_AT), get_i16(JOG_Z_AT),
-                             get_u16(JOG_RATE_AT),
-                             get_u16(JOG_PATIENCE_AT));
+                             get_u16(JOG_RATE_AT), get_u16(JOG_PATIENCE_AT));
         break;
     case COMMAND_HOME:
         error = machine_home(frame_payload[HOME_AXES_AT]);

@@ -252,6 +252,13 @@ void path_bridge(void)
     }
 }
 
+void path_keep_up(void)
+{
+    if (!ended) {
+        make();
+    }
+}
+
 void path_poll(void)
 {
     if (!ended) {

@@ -91,6 +91,10 @@ void path_begin(void);
 /* Plans and generates as far as there is room; every main loop turn. */
 void path_poll(void);
 
+/* The same without planning, for the main loop's other work: called every
+   millisecond it lets the fastest motion go on. */
+void path_keep_up(void);
+
 /* Generates alone, for a path_source() that computes for long: called every
    50 ms or oftener it lets the tool stand where the queue ends, and the stream
    not run dry. */

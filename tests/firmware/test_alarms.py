@@ -21,6 +21,9 @@ PAGE = Path(__file__).parents[2] / "docs" / "alarms.md"
 ALARMS = [alarm for alarm in Alarm if alarm is not Alarm.NONE]
 #: A change that homing must notice: more than the setting spread_max.
 WOBBLE = 6
+#: More than dead_max = 20, less than LATE_MARGIN_STEPS of firmware/config.h beyond it.
+LATE = 40
+LOST = 8
 #: Beyond SWITCH_NEAR_STEPS of firmware/config.h.
 FAR_FROM_SWITCH = -450
 
@@ -68,11 +71,33 @@ def _broken_wire() -> Walker:
     return walker
 
 
+def _late_switch() -> Walker:
+    """The switch of X opens after more steps than dead_max allows."""
+    walker = SITUATIONS["unhomed"]()
+    bench = walker.bench
+    bench.set(dead_max=20)
+    bench.lathe.machine.options(AxisName.X).switch_travel = LATE
+    bench.lathe.machine.break_switch_wire(AxisName.X, broken=False)
+    bench.host.home()
+    return walker
+
+
+def _lost_steps() -> Walker:
+    """Z is not where the chip has counted it to be."""
+    walker = SITUATIONS["idle"]()
+    bench = walker.bench
+    bench.chip.set_variable("position_z", (bench.position[1] - LOST) & 0xFFFF, 2)
+    bench.host.home()
+    return walker
+
+
 #: Alarms that no cell of the table of states ends in, because they take a fault in mid-homing.
 OTHERS: dict[Alarm, Callable[[], Walker]] = {
     Alarm.HOME_NOT_RELEASED: _stuck_switch,
     Alarm.DEAD_STEPS_SPREAD: _loose_switch,
     Alarm.SWITCH_WIRING: _broken_wire,
+    Alarm.HOME_OPENED_LATE: _late_switch,
+    Alarm.PHASE_DRIFT: _lost_steps,
 }
 
 

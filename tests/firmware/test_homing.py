@@ -277,6 +277,6 @@ def test_the_slow_approach_has_the_rate_of_its_setting(rate: int) -> None:
     bench.chip.log_pins("RD0", "RD1", "RD2", "RD3")
     bench.run(0.16)
     first, second = bench.chip.pin_changes()[:2]
-    assert (second[0] - first[0]) == CYCLES_PER_SECOND // rate
+    assert abs(second[0] - first[0] - CYCLES_PER_SECOND // rate) <= 1
     bench.wait(lambda: bench.state is not State.HOMING, 10.0)
     assert bench.status().dead_x == 5

@@ -8,7 +8,7 @@ from functools import partial
 
 from tornillo.errors import ChipError
 from tornillo.image import pack_segments
-from tornillo.protocol import Command, ErrorCode, SettingId, State
+from tornillo.protocol import Command, ErrorCode, HomedAxis, SettingId, State
 from virtual_lathe.chip import NonVolatile, Reset
 from virtual_lathe.machine import AxisName
 
@@ -16,6 +16,7 @@ from simulated.situations import IDLE_MS, OTHER, ROUNDING, Walker
 
 #: Values of every command that has some.
 VALUES: dict[Command, tuple[int, ...]] = {
+    Command.HOME: (HomedAxis.X | HomedAxis.Z,),
     Command.RUN: (0xFF, 0),
     Command.ZERO: (0, 77),
     Command.OVERRIDE: (50,),
@@ -62,6 +63,8 @@ def _command(command: Command, walker: Walker) -> None:
 
 def _button(name: str, walker: Walker) -> None:
     walker.bench.press(name)
+    if name == "run":
+        walker.bench.run(0.05)  # it acts when it is let go, and the part is checked first
 
 
 def _limit(axis: AxisName, walker: Walker) -> None:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from tornillo.frames import crc16
 from tornillo.image import Segment, SegmentKind
 from tornillo.link import Link
-from tornillo.protocol import REQUESTS, UPLOAD_PIECE_MAX, Command, State
+from tornillo.protocol import REQUESTS, UPLOAD_PIECE_MAX, Command, HomedAxis, State
 from virtual_lathe.machine import AxisName
 
 from simulated import little_pin
@@ -75,14 +75,14 @@ def _prepared() -> Walker:
 
 def _idle() -> Walker:
     walker = _prepared()
-    walker.send(Command.HOME)
+    walker.send(Command.HOME, HomedAxis.X | HomedAxis.Z)
     walker.bench.wait_for(State.IDLE)
     return walker
 
 
 def _homing() -> Walker:
     walker = _prepared()
-    walker.send(Command.HOME)
+    walker.send(Command.HOME, HomedAxis.X | HomedAxis.Z)
     walker.bench.run(0.05)
     return walker
 

@@ -23,6 +23,7 @@ BYTE_I := $(BYTE_C:firmware/%.c=$(OBJECTS)/%.i)
 FIRMWARE_C := $(filter-out $(BYTE_C),$(wildcard firmware/*.c firmware/*/*.c))
 FIRMWARE_ASM := $(wildcard firmware/*.asm firmware/*/*.asm)
 FIRMWARE_H := $(wildcard firmware/*.h firmware/*/*.h)
+FIRMWARE_INC := $(wildcard firmware/*/*.inc)
 COMPILED := $(FIRMWARE_C:firmware/%.c=$(OBJECTS)/%.asm)
 FIRMWARE_O := $(FIRMWARE_ASM:firmware/%.asm=$(OBJECTS)/%.o) \
   $(OBJECTS)/compiled.o $(OBJECTS)/byte_code.o $(OBJECTS)/sfr.o
@@ -77,10 +78,10 @@ $(OBJECTS)/compiled.o: $(COMPILED) $(FIRMWARE_ASM) $(OBJECTS)/byte_code.asm \
 	  --report -o $(@:.o=.asm) $(COMPILED) >$(FIRMWARE)/shrink.txt
 	@gpasm -p$(CHIP) -w2 -c $(@:.o=.asm) -o $@
 
-$(OBJECTS)/%.o: firmware/%.asm | $(SETUP_STAMP)
+$(OBJECTS)/%.o: firmware/%.asm $(FIRMWARE_INC) | $(SETUP_STAMP)
 	@mkdir -p $(@D)
 	@echo "gpasm  $<"
-	@gpasm -p$(CHIP) -w2 -c $< -o $@
+	@gpasm -p$(CHIP) -w2 -I firmware/bytecode -c $< -o $@
 
 $(FIRMWARE)/tornillo.hex $(FIRMWARE)/tornillo.cod $(FIRMWARE)/tornillo.map &: \
   $(FIRMWARE_O) firmware/tornillo.lkr

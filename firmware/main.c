@@ -1,21 +1,21 @@
 /* Start-up, the main loop, and the low-priority interrupt.
    SPDX-License-Identifier: Apache-2.0 */
 
-#include "board.h"          /* pin directions */
-#include "lathe/guard.h"    /* guard_tick */
-#include "lathe/machine.h"  /* the machine */
-#include "link/commands.h"  /* reset cause */
-#include "link/frame.h"     /* frame_poll */
-#include "link/protocol.h"  /* reset causes */
-#include "motion/path.h"    /* moves */
-#include "motion/ramp.h"    /* speed */
-#include "motion/stream.h"  /* step timer */
-#include "panel/inputs.h"   /* buttons */
-#include "panel/led.h"      /* status LED */
-#include "sfr.h"            /* registers */
-#include "store/parts.h"    /* part store */
-#include "tick.h"           /* 1 ms */
-#include "usb/cdc.h"        /* USB */
+#include "board.h"         /* pin directions */
+#include "lathe/guard.h"   /* guard_tick */
+#include "lathe/machine.h" /* the machine */
+#include "link/commands.h" /* reset cause */
+#include "link/frame.h"    /* frame_poll */
+#include "link/protocol.h" /* reset causes */
+#include "motion/path.h"   /* moves */
+#include "motion/ramp.h"   /* speed */
+#include "motion/stream.h" /* step timer */
+#include "panel/inputs.h"  /* buttons */
+#include "panel/led.h"     /* status LED */
+#include "sfr.h"           /* registers */
+#include "store/parts.h"   /* part store */
+#include "tick.h"          /* 1 ms */
+#include "usb/cdc.h"       /* USB */
 
 /*
  * Configuration words. 20 MHz crystal / 5 -> 4 MHz -> 96 MHz PLL: / 2 gives

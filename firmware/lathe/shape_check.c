@@ -2,14 +2,14 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "lathe/shape_check.h"
-#include "lathe/contour.h"  /* pieces, material */
-#include "lathe/part.h"     /* records */
+#include "lathe/contour.h"          /* pieces, material */
+#include "lathe/part.h"             /* records */
 #include "lathe/shape_arithmetic.h" /* slopes, arcs */
-#include "link/protocol.h"  /* offsets, refusals */
-#include "motion/path.h"    /* kinds of segment */
-#include "store/flash.h"    /* reading numbers */
-#include "store/parts.h"    /* where the image is */
-#include "store/settings.h" /* travel, part zero */
+#include "link/protocol.h"          /* offsets, refusals */
+#include "motion/path.h"            /* kinds of segment */
+#include "store/flash.h"            /* reading numbers */
+#include "store/parts.h"            /* where the image is */
+#include "store/settings.h"         /* travel, part zero */
 
 #define KIND_LAST 4 /* of a contour: profile */
 

@@ -76,7 +76,7 @@ _ramp_scale     res 2                   ; override, 256 = 100 %
 
 ramp_code       code
 
-; --- once with every new period ---------------------------------------------------------
+; --- once with every new period ----------------------------------------------
 copy_3  macro   from, to
         movff   from, to
         movff   from + 1, to + 1

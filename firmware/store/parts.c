@@ -5,7 +5,7 @@
 #include "link/crc.h"      /* crc16_update */
 #include "link/protocol.h" /* PART_SLOTS, errors */
 #include "store/eeprom.h"  /* selected part */
-#include "store/image.h"    /* the open one */
+#include "store/image.h"   /* the open one */
 #include "store/flash.h"   /* read, erase, write */
 
 #define IMAGE_AT FLASH_BLOCK

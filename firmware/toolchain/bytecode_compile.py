@@ -19,6 +19,8 @@ from bytecode_model import Code, Function, Unit
 from bytecode_types import fit, refuse
 from pycparser import c_ast
 
+Statements = list[c_ast.Node]
+
 
 class Compiler(Expressions):
     """Compiles one function."""
@@ -158,9 +160,9 @@ class Compiler(Expressions):
         self.put(end)
         self.breaks.pop()
 
-    def _nested_cases(self, bodies: list[tuple[str, list]]) -> list[tuple[str, list]]:
+    def _nested_cases(self, bodies: list[tuple[str, Statements]]) -> list[tuple[str, Statements]]:
         """Take apart `case A: case B:`, which the parser puts one inside the other."""
-        found = []
+        found: list[tuple[str, Statements]] = []
         for first, statements in bodies:
             label, rest = first, statements or []
             while rest and isinstance(rest[0], (c_ast.Case, c_ast.Default)):

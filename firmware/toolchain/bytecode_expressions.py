@@ -6,141 +6,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import ClassVar
 
-from bytecode_model import Code, Function, Label, Place, Signature, Unit, common
-from bytecode_types import I16, U8, U16, VOID, BytecodeError, Type, fit, refuse
+from bytecode_conditions import Conditions
+from bytecode_model import Place, Signature, Unit, common
+from bytecode_operators import COMMUTATIVE, FROM_RAM, LIBRARY, SIMPLE_OPERATIONS, SWAPPED
+from bytecode_types import I16, U8, U16, VOID, Type, refuse
 from pycparser import c_ast
 
-SWAPPED = {"<": ">", ">": "<", "<=": ">=", ">=": "<=", "==": "==", "!=": "!="}
-INVERTED = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
-SIGNED_JUMP = {"<": "jlt", ">=": "jge", ">": "jgt", "<=": "jle", "==": "jeq", "!=": "jne"}
-UNSIGNED_JUMP = SIGNED_JUMP | {"<": "jltu", ">=": "jgeu", ">": "jgtu", "<=": "jleu"}
-SIMPLE_OPERATIONS = {"+": "add", "-": "sub", "&": "and", "|": "or", "^": "xor"}
-COMMUTATIVE = {"+", "&", "|", "^", "*"}
-FROM_RAM = {"add8", "add16", "sub8", "sub16", "and8", "and16", "or8", "or16", "xor8"}
-LIBRARY = {"*": "_mulint", "/": "_divuint", "%": "_moduint"}
 
-
-class Expressions:
+class Expressions(Conditions):
     """Compiles expressions into the operations of one function."""
 
-    def __init__(self, unit: Unit, native: set[str], function: Function) -> None:
-        """`native`: functions that are not byte code."""
-        self.unit = unit
-        self.types = unit.types
-        self.native = native
-        self.function = function
-        self.labels = 0
-
-    # --- small helpers ---------------------------------------------------------
-
-    def emit(
-        self, op: str, operand: Place | int | str | None = None, extra: int | None = None
-    ) -> None:
-        """Append an operation."""
-        self.function.code.append(Code(op, operand, extra))
-
-    def new_label(self) -> str:
-        """Return a label not used yet."""
-        self.labels += 1
-        return f"{self.function.name}@{self.labels}"
-
-    def put(self, label: str) -> None:
-        """Put a label here."""
-        self.function.code.append(Label(label))
-
-    def ends(self) -> bool:
-        """Tell whether control cannot come to the end of what is there."""
-        code = self.function.code
-        return bool(code) and isinstance(code[-1], Code) and code[-1].op in ("ret", "retk", "jmp")
-
-    def variable(self, node: c_ast.Node, name: str) -> tuple[Place, Type]:
-        """Return where a variable is."""
-        if name in self.function.locals:
-            return Place(f"{self.function.name}.{name}"), self.function.locals[name]
-        if name in self.unit.variables:
-            return self.unit.variables[name]
-        raise refuse(node, f"{name} is not a variable of RAM")
-
-    def load_constant(self, value: int) -> None:
-        """A = value."""
-        self.emit("ldk", value & 0xFFFF)
-
-    def load(self, place: Place, kind: Type) -> None:
-        """A = variable."""
-        if kind.size not in (1, 2):
-            raise BytecodeError(f"{place} has {kind.size} bytes; 1 and 2 can be had")
-        self.emit("ld8" if kind.size == 1 else "ld16", place)
-
-    def store(self, place: Place, kind: Type) -> None:
-        """Variable = A."""
-        if kind.size not in (1, 2):
-            raise BytecodeError(f"{place} has {kind.size} bytes; 1 and 2 can be had")
-        self.emit("st8" if kind.size == 1 else "st16", place)
-
-    # --- addresses -------------------------------------------------------------
-
-    def place(self, node: c_ast.Node) -> tuple[Place, Type] | None:
-        """Return where an expression's value lies, None unless that is fixed."""
-        match node:
-            case c_ast.ID():
-                if node.name in self.function.locals or node.name in self.unit.variables:
-                    return self.variable(node, node.name)
-            case c_ast.StructRef(type="."):
-                inner = self.place(node.name)
-                return None if inner is None else self.member(node, *inner)
-            case c_ast.Cast():
-                inner = self.place(node.expr)
-                kind = self.types.of(node.to_type)
-                if inner is not None and inner[1].size == kind.size == 2:
-                    return inner[0], kind
-            case c_ast.ArrayRef() | c_ast.UnaryOp(op="*"):
-                return self.pointed_at(node)
-        return None
-
-    def pointed_at(self, node: c_ast.ArrayRef | c_ast.UnaryOp) -> tuple[Place, Type] | None:
-        """Return the place of array[constant] or *address."""
-        indexed = isinstance(node, c_ast.ArrayRef)
-        base = self.address(node.name if indexed else node.expr)
-        index = self.types.maybe_constant(node.subscript) if indexed else 0
-        if base is None or index is None:
-            return None
-        return base[0].plus(index * base[1].element.size), base[1].element
-
-    def member(self, node: c_ast.StructRef, place: Place, kind: Type) -> tuple[Place, Type]:
-        """Return the member of a structure."""
-        for name, member, offset in kind.members:
-            if name == node.field.name:
-                return place.plus(offset), member
-        raise refuse(node, f"no member {node.field.name}")
-
-    def address(self, node: c_ast.Node) -> tuple[Place, Type] | None:
-        """Return the fixed address that an expression is: an array, &x, array + k, a cast of it."""
-        match node:
-            case c_ast.ID() if node.name in self.unit.variables:
-                place, kind = self.unit.variables[node.name]
-                return (place, kind) if kind.count else None
-            case c_ast.UnaryOp(op="&"):
-                inner = self.place(node.expr)
-                return None if inner is None else (inner[0], Type(2, target=inner[1]))
-            case c_ast.Cast():
-                kind = self.types.of(node.to_type)
-                inner = self.address(node.expr)
-                return (inner[0], kind) if inner is not None and kind.target else None
-            case c_ast.BinaryOp(op="+"):
-                base = self.address(node.left)
-                index = self.types.maybe_constant(node.right)
-                if base is not None and index is not None:
-                    return base[0].plus(index * base[1].element.size), base[1]
-            case c_ast.StructRef():
-                inner = self.place(node)
-                return inner if inner is not None and inner[1].count else None
-        return None
-
     # --- expressions -----------------------------------------------------------
-
-    def constant(self, node: c_ast.Node) -> int | None:
-        """Return the value of a constant expression, None if it is none."""
-        return self.types.maybe_constant(node)
 
     def value(self, node: c_ast.Node) -> Type:
         """A = expression; returns its type."""
@@ -343,13 +219,6 @@ class Expressions:
         if shift:
             self.emit("shl" if op == "*" else "shr", shift)
 
-    def stacked(self, op: str, left: c_ast.Node, right: c_ast.Node) -> None:
-        """A = left op right with the right side on the stack."""
-        self.value(right)
-        self.emit("push")
-        self.value(left)
-        self.emit(op)
-
     def shift(self, node: c_ast.BinaryOp) -> Type:
         """A = left << >> right."""
         count = self.constant(node.right)
@@ -364,13 +233,6 @@ class Expressions:
         else:
             self.emit("shr", count)
         return kind
-
-    def simple(self, node: c_ast.Node) -> bool:
-        """Tell whether an expression can be the right side of an operation as it is."""
-        if self.constant(node) is not None:
-            return True
-        place = self.place(node)
-        return place is not None and place[1].size in (1, 2)
 
     # --- calls -----------------------------------------------------------------
 
@@ -485,80 +347,6 @@ class Expressions:
         self.binary(c_ast.BinaryOp(op, node.lvalue, node.rvalue, node.coord))
         self.store(*place)
         return place[1]
-
-    # --- conditions ------------------------------------------------------------
-
-    def jump_if(self, node: c_ast.Node, label: str) -> None:
-        """Jump where the expression is true."""
-        self.condition(node, label, True)
-
-    def jump_unless(self, node: c_ast.Node, label: str) -> None:
-        """Jump where the expression is false."""
-        self.condition(node, label, False)
-
-    def condition(self, node: c_ast.Node, label: str, wanted: bool) -> None:
-        """Jump where the truth of the expression is as wanted."""
-        number = self.constant(node)
-        if number is not None:
-            if bool(number) == wanted:
-                self.emit("jmp", label)
-            return
-        match node:
-            case c_ast.UnaryOp(op="!"):
-                self.condition(node.expr, label, not wanted)
-            case c_ast.BinaryOp(op="&&" | "||"):
-                self.both(node, label, wanted)
-            case c_ast.BinaryOp(op=op) if op in SWAPPED:
-                self.comparison(node, label, wanted)
-            case _:
-                self.value(node)
-                self.emit("jnz" if wanted else "jz", label)
-
-    def both(self, node: c_ast.BinaryOp, label: str, wanted: bool) -> None:
-        """Jump by && or ||."""
-        if (node.op == "||") == wanted:
-            self.condition(node.left, label, wanted)
-            self.condition(node.right, label, wanted)
-            return
-        end = self.new_label()
-        self.condition(node.left, end, not wanted)
-        self.condition(node.right, label, wanted)
-        self.put(end)
-
-    def comparison(self, node: c_ast.BinaryOp, label: str, wanted: bool) -> None:
-        """Jump by a comparison."""
-        op, left, right = node.op, node.left, node.right
-        kind = common(self.type_of(left), self.type_of(right))
-        if self.constant(left) is not None or (self.simple(left) and not self.simple(right)):
-            op, left, right = SWAPPED[op], right, left
-        if not wanted:
-            op = INVERTED[op]
-        number = self.constant(right)
-        if number is not None:
-            number = fit(number, kind)
-            if op == ">":
-                op, number = ">=", number + 1
-            elif op == "<=":
-                op, number = "<", number + 1
-            if (number == 0 and op in ("==", "!=")) or (number == 1 and not kind.signed):
-                if op in ("==", "!=") and number == 0:
-                    self.value(left)
-                    self.emit("jz" if op == "==" else "jnz", label)
-                    return
-                if op in ("<", ">="):
-                    self.value(left)
-                    self.emit("jz" if op == "<" else "jnz", label)
-                    return
-            self.value(left)
-            self.emit("cmpk", number & 0xFFFF)
-        else:
-            place = self.place(right)
-            if place is not None and place[1].size in (1, 2):
-                self.value(left)
-                self.emit(f"cmp{8 * place[1].size}", place[0])
-            else:
-                self.stacked("cmps", left, right)
-        self.emit((SIGNED_JUMP if kind.signed else UNSIGNED_JUMP)[op], label)
 
     VALUES: ClassVar[dict[type[c_ast.Node], Callable[..., Type]]] = {
         c_ast.ArrayRef: indexed,

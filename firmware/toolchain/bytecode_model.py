@@ -57,6 +57,11 @@ class Function:
     module: str = ""  # the source file
     meanwhile: set[tuple[str, str]] = field(default_factory=set)  # arguments wait for a call
 
+    def natives(self) -> list[Code]:
+        """Return the calls of native functions, once the operations are the chip's."""
+        codes = [line for line in self.code if isinstance(line, Code)]
+        return [code for code in codes if code.op in ("native8", "native16")]
+
 
 @dataclass
 class Signature:

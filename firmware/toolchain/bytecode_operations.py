@@ -102,8 +102,3 @@ def size(code: Code | Label) -> int:
 def can_pair(code: Code) -> bool:
     """Tell whether an operation may come from the table of pairs."""
     return code.op in SMALL or code.op in MEMORY or code.op in ("call", "native8", "native16")
-
-
-def is_native(line: Code | Label) -> bool:
-    """Tell whether this calls a native function."""
-    return isinstance(line, Code) and line.op in ("native8", "native16")

@@ -139,6 +139,7 @@ class Types:
 
     def maybe_constant(self, node: c_ast.Node) -> int | None:
         """Return the value of a constant expression, None if it is none."""
+        value: int | None
         match node:
             case c_ast.Constant(type="char"):
                 value = ord(node.value[1])
@@ -153,8 +154,9 @@ class Types:
             case c_ast.BinaryOp():
                 left = self.maybe_constant(node.left)
                 right = self.maybe_constant(node.right)
-                known = left is not None and right is not None
-                value = int(OPERATORS[node.op](left, right)) if known else None
+                value = None
+                if left is not None and right is not None:
+                    value = int(OPERATORS[node.op](left, right))
             case c_ast.TernaryOp():
                 chosen = self.maybe_constant(node.cond)
                 way = node.iftrue if chosen else node.iffalse

@@ -18,11 +18,11 @@ import re
 import sys
 from collections import Counter, defaultdict
 from pathlib import Path
+from typing import Any
 
 from bytecode_compile import Compiler
 from bytecode_link import Frames, Layout, Module, stack_use, write
 from bytecode_model import Function, Place, Signature, Unit
-from bytecode_operations import is_native
 from bytecode_optimise import Pieces, optimise
 from bytecode_types import BytecodeError, Types
 from pycparser import c_ast, c_parser
@@ -143,7 +143,7 @@ class Native:
         return seen
 
 
-def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, object]]:
+def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, Any]]:
     """Return the assembly and the use of the stack."""
     names = Counter(n.decl.name for s in sources for n in s.definitions)
     names += Counter(
@@ -181,7 +181,7 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, o
     }
     frames = Frames(functions, reach)
     Pieces(functions).fold()
-    natives = sorted({str(line.operand) for f in functions for line in f.code if is_native(line)})
+    natives = sorted({str(line.operand) for f in functions for line in f.natives()})
     layout = Layout(functions, natives)
     modules = [source.module for source in sources]
     text = write(modules, layout, frames, entries)

@@ -52,7 +52,7 @@ def read_hex(path: Path) -> bytes:
 def rooms(directory: Path) -> tuple[Counter[str], Counter[str], int]:
     """Return flash and RAM bytes by room, and the bytes set aside for the software stack.
 
-    Compiled C is one section; shrink.txt says what each of its files has become.
+    Compiled C is one section, byte code another.
     """
     map_text = (directory / "tornillo.map").read_text()
     sources = {}
@@ -74,15 +74,20 @@ def rooms(directory: Path) -> tuple[Counter[str], Counter[str], int]:
             stack += size
         elif match[4] == "data" and address < RAM_BYTES:
             ram[owner] += size
+    for owner, file, count in by_file(directory):
+        flash[C_FILES[file]] += count
+        flash[owner] -= count
+    return flash, ram, stack
+
+
+def by_file(directory: Path) -> list[tuple[str, str, int]]:
+    """Return what each file of C has become: bytes of one of the two common sections."""
+    found = []
     for line in (directory / "shrink.txt").read_text().splitlines():
         if (match := SHRUNK.match(line)) and match[1] != "all":
-            flash[C_FILES[match[1]]] += int(match[2])
-            flash[COMPILED] -= int(match[2])
-    for file, count in json.loads((directory / "byte_code.json").read_text())["flash"].items():
-        if file:
-            flash[C_FILES[file]] += count
-            flash[BYTE_CODE] -= count
-    return flash, ram, stack
+            found.append((COMPILED, match[1], int(match[2])))
+    sizes = json.loads((directory / "byte_code.json").read_text())["flash"]
+    return found + [(BYTE_CODE, file, count) for file, count in sizes.items() if file]
 
 
 def byte_code(directory: Path) -> ByteCode:

@@ -60,9 +60,9 @@ def test_the_contact_finds_the_backlash_when_less_is_taken_up(backlash: int, dea
     assert from_steps([backlash] * 3, known).switch_travel == 14
 
 
-def test_a_contact_that_does_not_open_ends_the_procedure() -> None:
+def test_a_contact_that_does_not_open_ends_the_procedure(monkeypatch: pytest.MonkeyPatch) -> None:
     slide = MeasuredSlide(23, 0, work=-150)
-    slide.contact = lambda: True  # type: ignore[method-assign]
+    monkeypatch.setattr(slide, "contact", lambda: True)
     with pytest.raises(TornilloError, match="stayed closed"):
         by_contact(slide, 400, 1)
 

@@ -17,7 +17,13 @@ TABLES = {
 }
 LENGTH = 8  # of arrays and tables
 
-State = dict[str, int | list[int]]
+
+@dataclass
+class State:
+    """The variables, and the arrays, by name."""
+
+    numbers: dict[str, int]
+    arrays: dict[str, list[int]]
 
 
 def fit(value: int, kind: str) -> int:
@@ -55,11 +61,11 @@ class Generator:
         chance = self.random.random()
         if chance < 0.55:
             name, kind = self.random.choice(VARIABLES)
-            return Expression(name, kind, lambda state: state[name])  # type: ignore[return-value]
+            return Expression(name, kind, lambda state: state.numbers[name])
         if chance < 0.7:
             name = self.random.choice(sorted(ARRAYS))
             index = self.random.randrange(LENGTH)
-            return Expression(f"{name}[{index}]", ARRAYS[name], lambda s: s[name][index])
+            return Expression(f"{name}[{index}]", ARRAYS[name], lambda s: s.arrays[name][index])
         number = self.random.choice(
             [0, 1, 2, 7, 100, 255, 256, 1000, 32767, self.random.randrange(32768)]
         )
@@ -162,7 +168,9 @@ class Generator:
         if kind == "array":
             name = self.random.choice(sorted(ARRAYS))
             return Expression(
-                f"{name}[{inner.text} & 7]", ARRAYS[name], lambda s: s[name][inner.value(s) & 7]
+                f"{name}[{inner.text} & 7]",
+                ARRAYS[name],
+                lambda s: s.arrays[name][inner.value(s) & 7],
             )
         if kind == "table":
             name = self.random.choice(sorted(TABLES))
@@ -193,7 +201,7 @@ class Generator:
 
         def run(state: State) -> None:
             value = inner.value(state)
-            state[name] = fit(value + (state[name] if op == "+=" else 0), kind)
+            state.numbers[name] = fit(value + (state.numbers[name] if op == "+=" else 0), kind)
 
         return f"{name} {op} {inner.text};", run
 
@@ -204,7 +212,7 @@ class Generator:
 
         def run(state: State) -> None:
             value = fit(inner.value(state), ARRAYS[name])
-            state[name][index.value(state) & 7] = value
+            state.arrays[name][index.value(state) & 7] = value
 
         return f"{name}[{index.text} & 7] = {inner.text};", run
 

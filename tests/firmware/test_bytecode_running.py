@@ -16,6 +16,10 @@ from firmware.random_c import ARRAYS, LENGTH, TABLES, U8, VARIABLES, Generator, 
 from firmware.test_shrink_running import ROOT, SDCC, SDCC_FLAGS
 
 FUNCTIONS = 12
+ASSEMBLER: tuple[str | Path, ...] = (
+    *("gpasm", "-p18f4550", "-w2"),
+    *("-I", ROOT / "firmware/bytecode"),
+)
 TOOLCHAIN = ROOT / "firmware/toolchain"
 
 NATIVE = """
@@ -50,12 +54,15 @@ void main(void)
 
 def start(seed: int) -> State:
     """Return the first values of all variables."""
-    state: State = {}
-    for number, (name, kind) in enumerate(VARIABLES):
-        state[name] = fit(seed * 7919 + number * 12345, kind)
-    for name, kind in ARRAYS.items():
-        state[name] = [fit(seed * 31 + number * 4711, kind) for number in range(LENGTH)]
-    return state
+    numbers = {
+        name: fit(seed * 7919 + number * 12345, kind)
+        for number, (name, kind) in enumerate(VARIABLES)
+    }
+    arrays = {
+        name: [fit(seed * 31 + number * 4711, kind) for number in range(LENGTH)]
+        for name, kind in ARRAYS.items()
+    }
+    return State(numbers, arrays)
 
 
 def program(seed: int) -> tuple[str, State]:
@@ -69,11 +76,9 @@ def program(seed: int) -> tuple[str, State]:
         lines.append(f"static const {kind} {name}[] = {{{', '.join(map(str, values))}}};")
     lines.append("static uint8_t turn;")
     lines.append("static uint16_t byte_mix(uint8_t a, uint16_t b)\n{ return a * 3u + (b >> 1); }")
-    first = [f"{name} = {value};" for name, value in state.items() if isinstance(value, int)]
-    for name in ARRAYS:
-        values = state[name]
-        assert isinstance(values, list)
-        first += [f"{name}[{index}] = {value};" for index, value in enumerate(values)]
+    first = [f"{name} = {value};" for name, value in state.numbers.items()]
+    for name, elements in state.arrays.items():
+        first += [f"{name}[{index}] = {value};" for index, value in enumerate(elements)]
     parts = [generator.function(f"f{number}") for number in range(FUNCTIONS)]
     lines += [text for text, _ in parts]
     cases = " ".join(f"case {number}: f{number}(); break;" for number in range(FUNCTIONS))
@@ -99,38 +104,54 @@ def build(folder: Path, source: str) -> Path:
     own = [
         ROOT / f"firmware/{name}.asm" for name in ("startup", "arithmetic", "bytecode/interpreter")
     ]
+    compiler: list[str | Path] = [sys.executable, TOOLCHAIN / "compile_bytecode.py"]
     run(
-        *(sys.executable, TOOLCHAIN / "compile_bytecode.py", "--native", "native.asm", *own),
-        *("-o", "bytes.asm", "--stack", "bytes.json", "bytes.i"),
+        *compiler,
+        "--native",
+        "native.asm",
+        *own,
+        "-o",
+        "bytes.asm",
+        "--stack",
+        "bytes.json",
+        "bytes.i",
     )
-    assembly = [item for path in (*own, folder / "bytes.asm") for item in ("--asm", path)]
-    run(
-        *(sys.executable, TOOLCHAIN / "shrink_assembly.py", *assembly),
-        *("--entries", "bytes.json", "-o", "shrunk.asm", "native.asm"),
-    )
+    assembly: list[str | Path] = [
+        item for path in (*own, folder / "bytes.asm") for item in ("--asm", path)
+    ]
+    shrinker: list[str | Path] = [sys.executable, TOOLCHAIN / "shrink_assembly.py", *assembly]
+    run(*shrinker, "--entries", "bytes.json", "-o", "shrunk.asm", "native.asm")
     objects = []
     for path in (*own, folder / "bytes.asm", folder / "shrunk.asm"):
         objects.append(folder / f"{path.stem}.o")
-        run("gpasm", "-p18f4550", "-w2", "-c", path, "-o", objects[-1])
+        run(
+            "gpasm",
+            "-p18f4550",
+            "-w2",
+            "-I",
+            ROOT / "firmware/bytecode",
+            "-c",
+            path,
+            "-o",
+            objects[-1],
+        )
     run(SDCC / "bin/sdcc", *SDCC_FLAGS, "-c", ROOT / "build/firmware/sfr.c", "-o", "sfr.o")
-    run(
-        *("gplink", "-q", "-c", "-m", "-s", ROOT / "firmware/tornillo.lkr", "-o", "all.hex"),
-        *(*objects, "sfr.o", SDCC / "lib/libsdcc.lib"),
-    )
+    linker: list[str | Path] = ["gplink", "-q", "-c", "-m", "-s", ROOT / "firmware/tornillo.lkr"]
+    run(*linker, "-o", "all.hex", *objects, "sfr.o", SDCC / "lib/libsdcc.lib")
     return folder / "all.hex"
 
 
-def results(image: Path) -> dict[str, int | list[int]]:
+def results(image: Path) -> State:
     """Run an image until it says it is done; return its variables."""
     chip = Chip(image)
     assert chip.run_until(lambda: chip.variable("done") == 1, 2.0)
-    found: dict[str, int | list[int]] = {}
+    found = State({}, {})
     for name, kind in VARIABLES:
-        found[name] = fit(chip.variable(name, 1 if kind == U8 else 2), kind)
+        found.numbers[name] = fit(chip.variable(name, 1 if kind == U8 else 2), kind)
     for name, kind in ARRAYS.items():
         size = 1 if kind == U8 else 2
         packed = chip.variable(name, size * LENGTH).to_bytes(size * LENGTH, "little")
-        found[name] = [
+        found.arrays[name] = [
             fit(int.from_bytes(packed[at : at + size], "little"), kind)
             for at in range(0, size * LENGTH, size)
         ]

@@ -131,6 +131,20 @@ def test_no_contact_within_the_way_is_told_and_the_tool_is_back() -> None:
 
 
 @on_a_new_chip
+def test_interference_on_the_line_of_the_sensor_is_no_contact() -> None:
+    bench = lathe_with_sensor({"x": -30, "z": -20})
+    bench.host.touch(Axis.X, -60)
+    while bench.is_in(State.TOUCHING):
+        bench.chip.drive("RA1", Drive.LOW)
+        bench.run(0.0005)
+        bench.chip.drive_volts("RA1", 5.0, 10e3)
+        bench.run(0.0055)
+        bench.status()
+    assert bench.position[0] == -60
+    assert bench.status().inputs == StatusInput(0)
+
+
+@on_a_new_chip
 def test_a_contact_that_does_not_open_again_is_told() -> None:
     bench = lathe_with_sensor()
     bench.lathe.at(bench.lathe.seconds + 0.05, bench.lathe.machine.short_probe)

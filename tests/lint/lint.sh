@@ -37,7 +37,7 @@ tracked() {
 mapfile -t firmware_c < <(tracked 'firmware/*.c' 'firmware/*.h')
 mapfile -t native < <(tracked 'tests/virtual_lathe/native/*.cc' \
     'tests/virtual_lathe/native/*.hh' 'tests/virtual_lathe/native/*.h')
-mapfile -t assembly < <(tracked 'firmware/*.asm' 'tests/*.asm')
+mapfile -t assembly < <(tracked 'firmware/*.asm' 'firmware/*.inc' 'tests/*.asm')
 mapfile -t python < <(tracked '*.py')
 mapfile -t shell < <(tracked '*.sh' .ci/run)
 mapfile -t formatted < <(printf '%s\n' "${firmware_c[@]}" "${native[@]}" |

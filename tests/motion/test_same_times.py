@@ -51,7 +51,7 @@ def in_noise(rig: Rig, chain: list[Segment], seed: int) -> Trace:
     numbers = count()
     rig.run(chance.random() * 2e-3)  # any phase of the chip's millisecond
     rig.start(chain)
-    while rig.state is not State.IDLE:
+    while not rig.is_in(State.IDLE):
         if rig.is_in(State.ALARM):
             raise MotionFault(f"alarm {rig.chip.variable('machine_alarm')}")
         if not rig.host.connected:
@@ -59,7 +59,7 @@ def in_noise(rig: Rig, chain: list[Segment], seed: int) -> Trace:
             rig.host.enumerate()
             rig.host.open_port()
         end = rig.chip.seconds + chance.random() * 0.2
-        while rig.chip.seconds < end and rig.state is not State.IDLE:
+        while rig.chip.seconds < end and not rig.is_in(State.IDLE):
             rig.host.receive()
             command = chance.choice(ASKED)
             payload = b"\0" if command in (Command.PART_INFO, Command.SETTING_GET) else b""

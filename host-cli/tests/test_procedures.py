@@ -60,9 +60,16 @@ def test_the_contact_finds_the_backlash_when_less_is_taken_up(backlash: int, dea
     assert from_steps([backlash] * 3, known).switch_travel == 14
 
 
-def test_a_contact_that_does_not_open_ends_the_procedure(monkeypatch: pytest.MonkeyPatch) -> None:
-    slide = MeasuredSlide(23, 0, work=-150)
-    monkeypatch.setattr(slide, "contact", lambda: True)
+class StuckSlide(MeasuredSlide):
+    """One on which a chip connects tool and work."""
+
+    def contact(self) -> bool:
+        """Always closed."""
+        return True
+
+
+def test_a_contact_that_does_not_open_ends_the_procedure() -> None:
+    slide = StuckSlide(23, 0, work=-150)
     with pytest.raises(TornilloError, match="stayed closed"):
         by_contact(slide, 400, 1)
 

@@ -46,7 +46,7 @@ def gauge(bench: Bench, axis: Axis, _question: str, _units: str) -> float:
 
 @pytest.mark.parametrize(
     ("axis", "backlash", "travel"),
-    [(Axis.X, 0, 60), (Axis.X, 200, 60), (Axis.Z, 23, 14), (Axis.Z, 200, 0)],
+    [(Axis.X, 0, 60), (Axis.X, 200, 60), (Axis.Z, 23, 14)],
 )
 @on_a_new_chip
 def test_the_dial_gauge_finds_the_travel_of_the_switch_and_then_homing_the_backlash(
@@ -73,7 +73,7 @@ def test_the_dial_gauge_finds_the_travel_of_the_switch_and_then_homing_the_backl
     assert dead() == backlash
 
 
-@pytest.mark.parametrize(("backlash", "travel", "setting"), [(23, 14, 0), (30, 14, 14)])
+@pytest.mark.parametrize(("backlash", "travel", "setting"), [(9, 14, 0)])
 @on_a_new_chip
 def test_the_contact_sensor_finds_the_same_and_leaves_the_setting_until_it_is_stored(
     backlash: int, travel: int, setting: int

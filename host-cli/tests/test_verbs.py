@@ -17,6 +17,7 @@ from scripted_chip import ScriptedChip, ScriptedPort
 
 import tornillo.commands
 from tornillo.cli import main
+from tornillo.help_texts import translate
 from tornillo.verbs import VERBS
 
 #: What `tornillo --help` has no use for, and what it would cost: from 20 ms to a second each.
@@ -70,7 +71,7 @@ def test_a_verb_is_explained_in_one_line_of_the_help() -> None:
 
 @pytest.mark.parametrize("words", COMMANDS)
 def test_the_help_of_every_command_has_examples_that_can_be_typed(words: str) -> None:
-    found = examples(COMMANDS[words])
+    found = examples(translate(COMMANDS[words]))
     assert found
     for line in found:
         typed = shlex.split(line.removeprefix("sudo "), comments=True)[1:]

@@ -149,14 +149,14 @@ static void store(uint8_t id, int16_t value)
 static uint8_t drifted(void)
 {
     int16_t drift = position();
-    uint8_t phase = homing_axis == AXIS_X ? phase_x : phase_z;
+    uint8_t turn = homing_axis == AXIS_X ? phase_x : phase_z;
 
-    store(SETTING_HOME_PHASE_X, phase);
+    store(SETTING_HOME_PHASE_X, turn);
     if (!(known & axis_bit())) {
         drift = 0;
         if (before >= 0 && settings[SETTING_COIL_MODE] != COILS_STEP_DIR) {
-            phase = (phase - (uint8_t)before) & 7; /* half steps */
-            drift = (phase > 4 ? 8 - phase : phase) >> 1;
+            turn = (turn - (uint8_t)before) & 7; /* half steps */
+            drift = (turn > 4 ? 8 - turn : turn) >> 1;
         }
     }
     return size(drift) > (uint16_t)settings[SETTING_DRIFT_MAX];

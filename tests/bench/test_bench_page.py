@@ -69,7 +69,7 @@ def test_figures_stand_beside_those_of_the_peer_with_their_units() -> None:
         "power cut at each of 300 points of saving settings and parts: neither old nor new | 0"
         in page
     )
-    assert "20 parts a day, 100,000 writes a byte | 120; 7.2 |" in page
+    assert "years at 20 a day, 100,000 writes a byte | 120; 7.2 |" in page
     assert "| test bar, error of the feed | -0.0044 % |" in page
     assert "| upload of 30 operations, 296 bytes, and reading them back | 0.51 s |" in page
     assert "| 37.20 s, 39.10 s | 39.46 s |" in page

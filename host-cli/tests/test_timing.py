@@ -50,7 +50,8 @@ def test_the_times_of_a_plan_add_up() -> None:
     timing = time_plan(plan, DRIVES)
     assert len(timing.steps) == len(plan.steps)
     assert timing.total == pytest.approx(sum(timing.steps))
-    assert sum(timing.least) <= sum(timing.feeding) * 1.01
+    # A stroke begins with a step at once, which the way at the feed does not know.
+    assert sum(timing.least) <= sum(timing.feeding) * 1.03
     assert 0 < timing.share < 1
 
 

@@ -116,17 +116,22 @@ static void set_up_pins(void)
     PORTE |= PORTE_RDPU;
 }
 
-/* Byte code takes 0.3 ms a turn, so what decides is asked every 4 ms: the guard
-   stops the motors by itself. Motion and frames are served all the time. */
+/* Byte code takes 0.3 ms a turn, so what decides is asked when an input has
+   changed or the guard has stopped something, and else every 4 ms. Motion and
+   frames are served all the time. */
 static void serve(void)
 {
-    static uint8_t served; /* 4 ms */
-    uint8_t now = (uint8_t)(tick_now() >> 2);
+    static uint8_t served; /* ms */
+    static uint8_t seen;   /* inputs */
+    uint8_t now = (uint8_t)tick_now();
 
     if (now != served) {
         served = now;
-        machine_poll();
-        led_poll();
+        if (!(now & 3) || guard_tripped || inputs_state != seen) {
+            seen = inputs_state;
+            machine_poll();
+            led_poll();
+        }
     }
     if (machine_state != STATE_IDLE && machine_state != STATE_ALARM) {
         path_poll();

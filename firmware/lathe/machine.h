@@ -40,7 +40,8 @@ extern uint8_t machine_slot; /* part being cut or cut last, SLOT_NONE */
 /* Starts in IDLE, or in ALARM when the settings were lost. */
 void machine_init(void);
 
-/* Serves trips, buttons, and what moves; every 4 ms. */
+/* Serves trips, buttons, and what moves; every 4 ms, and a
+   millisecond after an input has changed. */
 void machine_poll(void);
 
 /* axes: HOMED_AXIS_... */

@@ -121,10 +121,9 @@ class Rig:
         if "_end_path_source" in self.symbols.program:
             self._answer_at = self.symbols.code("end_path_source")
         else:
-            self.chip.drive(RUN_PIN, Drive.LOW)
+            self._push(RUN_PIN)
             if not self.chip.run_to_address(self.symbols.code("path_source")):
                 raise MotionFault("the firmware never asks for a segment")
-            self.chip.drive(RUN_PIN, Drive.OPEN)
             self._answer_at = self.chip.read(TOSL) | self.chip.read(TOSL + 1) << 8
         self.chip.set_break(self._answer_at)
 
@@ -190,11 +189,23 @@ class Rig:
         if self.chip.level(pin):
             self.run_to(self._released + RELEASE_CYCLES)
         self.chip.drive(pin, Drive.LOW)
+        self._await(pin, until, look)
+        self.chip.drive(pin, Drive.OPEN)
+        self._released = self.chip.cycle
+
+    def _await(self, pin: str, until: Callable[[], bool], look: int) -> None:
+        """Run until something has come of a button."""
         end = self.chip.cycle + round(PRESS_TIMEOUT_S * CYCLES_PER_SECOND)
         while not until():
             if self.chip.cycle >= end:
                 raise MotionFault(f"nothing happens on {pin}, state {self.state.name}")
             self.run_to(self.chip.cycle + look)
+
+    def _push(self, pin: str) -> None:
+        """Push a button and let it go: RUN acts then, because a long press means another thing."""
+        self.run_to(self._released + RELEASE_CYCLES)
+        self.chip.drive(pin, Drive.LOW)
+        self.run_to(self.chip.cycle + RELEASE_CYCLES)
         self.chip.drive(pin, Drive.OPEN)
         self._released = self.chip.cycle
 
@@ -208,12 +219,7 @@ class Rig:
 
     def tap(self, button: str) -> None:
         """Press "run" or "hold" when nothing is to come of it."""
-        pin = {"run": RUN_PIN, "hold": HOLD_PIN}[button]
-        self.run_to(self._released + RELEASE_CYCLES)
-        self.chip.drive(pin, Drive.LOW)
-        self.run_to(self.chip.cycle + RELEASE_CYCLES)
-        self.chip.drive(pin, Drive.OPEN)
-        self._released = self.chip.cycle
+        self._push({"run": RUN_PIN, "hold": HOLD_PIN}[button])
 
     def stop(self) -> None:
         """Press the STOP button while something runs."""
@@ -275,7 +281,8 @@ class Rig:
         self._rest = iter(chain)
         self.asked = []
         self.chip.log_pins(*COIL_PINS)
-        self._press(RUN_PIN, lambda: bool(self.asked))
+        self._push(RUN_PIN)
+        self._await(RUN_PIN, lambda: bool(self.asked), LOOK_CYCLES)
         self.chip.pin_changes()
         self._coils = (self.chip.port("D") & 15, self.chip.port("B") & 15)
 
@@ -285,12 +292,16 @@ class Rig:
         return State(self.chip.variable("machine_state"))
 
     def start_and_hold(self, chain: Sequence[Segment]) -> None:
-        """Press RUN and, 1.2 ms later, HOLD: the chip takes notice of it before the first step."""
-        self.run_to(self._released + RELEASE_CYCLES)
-        self.chip.drive(RUN_PIN, Drive.LOW)
+        """Let RUN go and, 1.2 ms later, press HOLD: the chip sees it before the first step."""
+        self._rest = iter(chain)
+        self.asked = []
+        self.chip.log_pins(*COIL_PINS)
+        self._push(RUN_PIN)
         self.run_to(self.chip.cycle + HOLD_AFTER_CYCLES)
         self.chip.drive(HOLD_PIN, Drive.LOW)
-        self.start(chain)
+        self._await(RUN_PIN, lambda: bool(self.asked), LOOK_CYCLES)
+        self.chip.pin_changes()
+        self._coils = (self.chip.port("D") & 15, self.chip.port("B") & 15)
         self.hold()
 
     def is_in(self, state: State) -> bool:

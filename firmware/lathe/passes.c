@@ -30,6 +30,9 @@ enum stage {
     STAGE_PARKED
 };
 
+/* Wait for each pass left out: longer than working it out takes. */
+#define SKIP_MS 20
+
 uint8_t passes_more;
 
 static uint8_t slot_cut; /* other readers of the store may have moved on */
@@ -384,7 +387,7 @@ uint8_t passes_source(void)
         move();
         if (places_to_go_on != 0 && path_next.dx == 0) {
             path_next.kind = SEGMENT_WAIT; /* one pass in each turn */
-            path_next.dx = 1;
+            path_next.dx = SKIP_MS;
         }
     } while (path_next.dx == 0 && path_next.dz == 0);
     return 1;

@@ -230,7 +230,7 @@ static uint8_t make(void)
     if (path_refused || (!started && ramp_holding())) {
         return 0;
     }
-    if (!started && (ended || stream_fill() >= STREAM_ENTRIES / 2)) {
+    if (!started && (ended || bare || stream_fill() >= STREAM_ENTRIES / 2)) {
         started = 1;
         ramp_begin(0);
         stream_start();

@@ -93,8 +93,8 @@ class Expressions(Conditions):
         """A = the value in another type."""
         kind = self.types.of(node.to_type)
         inner = self.value(node.expr)
-        if kind.size > 2:
-            raise refuse(node, "more than 16 bits")
+        if kind.size > 2 or (kind.size == 1 and kind.signed):
+            raise refuse(node, "more than 16 bits, or 8 bits with a sign")
         if kind.size == 1 and inner.size != 1:
             self.emit("low")
         return kind

@@ -55,15 +55,19 @@ class Places:
 
     def load(self, place: Place, kind: Type) -> None:
         """A = variable."""
-        if kind.size not in (1, 2):
-            raise BytecodeError(f"{place} has {kind.size} bytes; 1 and 2 can be had")
-        self.emit("ld8" if kind.size == 1 else "ld16", place)
+        self.emit(f"ld{self.bits(place, kind)}", place)
 
     def store(self, place: Place, kind: Type) -> None:
         """Variable = A."""
+        self.emit(f"st{self.bits(place, kind)}", place)
+
+    def bits(self, place: Place, kind: Type) -> int:
+        """Return 8 or 16; BytecodeError for a variable that A cannot hold."""
         if kind.size not in (1, 2):
-            raise BytecodeError(f"{place} has {kind.size} bytes; 1 and 2 can be had")
-        self.emit("st8" if kind.size == 1 else "st16", place)
+            raise BytecodeError(f"{place} has more than 16 bits")
+        if kind.size == 1 and kind.signed:
+            raise BytecodeError(f"{place} has 8 bits with a sign")
+        return 8 * kind.size
 
     # --- addresses -------------------------------------------------------------
 

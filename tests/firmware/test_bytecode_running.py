@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from concurrent.futures import ProcessPoolExecutor
@@ -164,3 +165,36 @@ def test_random_programs_compute_what_the_rules_of_c_say(seed: int, tmp_path: Pa
     image = build(tmp_path, source)
     with ProcessPoolExecutor(1, get_context("spawn")) as worker:
         assert worker.submit(results, image).result() == wanted
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("int32_t wide; void begin(void) { wide = 1; }", "more than 16 bits"),
+        ("int8_t small; void begin(void) { small = -1; }", "8 bits with a sign"),
+        ("uint8_t a; void begin(void) { a = (int8_t)a > 0; }", "8 bits with a sign"),
+        ("int16_t a; void begin(void) { a = a / 3; }", "/ of signed numbers"),
+        ("uint8_t a, b; void begin(void) { a = a << b; }", "not constant"),
+        ("uint8_t a = 3; void begin(void) { a = 1; }", "an initialised variable"),
+        ("uint8_t g(uint8_t n); void begin(void) { goto end; end: return; }", "cannot do: Goto"),
+        ("static uint8_t f(uint8_t n) { return f(n); } void begin(void) { f(1); }", "recursion"),
+        ("void begin(uint8_t a) { a = 1; }", "takes arguments"),
+    ],
+)
+def test_what_byte_code_cannot_do_is_refused_with_its_place(
+    line: str, reason: str, tmp_path: Path
+) -> None:
+    (tmp_path / "native.asm").write_text("_main:\n\tcall\t_begin\n")
+    (tmp_path / "bytes.c").write_text(f"#include <stdint.h>\n{line}\n")
+    preprocess = [SDCC / "bin/sdcc", *SDCC_FLAGS, "-E", "bytes.c", "-o", "bytes.i"]
+    subprocess.run(preprocess, cwd=tmp_path, check=True, capture_output=True)
+    compiler = [sys.executable, TOOLCHAIN / "compile_bytecode.py", "--native", "native.asm"]
+    done = subprocess.run(
+        [*compiler, "-o", "bytes.asm", "--stack", "bytes.json", "bytes.i"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert re.search(reason, done.stderr), done.stderr

@@ -186,9 +186,11 @@ def test_what_byte_code_cannot_do_is_refused_with_its_place(
 ) -> None:
     (tmp_path / "native.asm").write_text("_main:\n\tcall\t_begin\n")
     (tmp_path / "bytes.c").write_text(f"#include <stdint.h>\n{line}\n")
-    preprocess = [SDCC / "bin/sdcc", *SDCC_FLAGS, "-E", "bytes.c", "-o", "bytes.i"]
-    subprocess.run(preprocess, cwd=tmp_path, check=True, capture_output=True)
-    compiler = [sys.executable, TOOLCHAIN / "compile_bytecode.py", "--native", "native.asm"]
+    sdcc = [str(SDCC / "bin/sdcc"), *SDCC_FLAGS]
+    subprocess.run(
+        [*sdcc, "-E", "bytes.c", "-o", "bytes.i"], cwd=tmp_path, check=True, capture_output=True
+    )
+    compiler = [sys.executable, str(TOOLCHAIN / "compile_bytecode.py"), "--native", "native.asm"]
     done = subprocess.run(
         [*compiler, "-o", "bytes.asm", "--stack", "bytes.json", "bytes.i"],
         cwd=tmp_path,

@@ -101,9 +101,6 @@ _coils_z        res 8                   ; backward for an inverted axis
 step_ring       udata
 _step_ring      res 256
 
-vector_high     code    0x000008
-        goto    step_interrupt
-
 count_up        macro   counter
         infsnz  counter, F, A
         incf    counter + 1, F, A
@@ -159,7 +156,8 @@ advance macro   step, negative, phase, table, pattern
 done:
         endm
 
-code_step       code
+; The loader's vector leads here (loader/loader.inc).
+code_step       code    0x000820
 step_interrupt:
         bcf     PIR2, CCP2IF, A
         btfsc   _stream_flags, WAITING, A

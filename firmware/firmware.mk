@@ -12,7 +12,7 @@ SDCC := $(SDCC_PREFIX)/bin/sdcc
 SDCC_FLAGS := -mpic16 -p$(CHIP) --no-warn-non-free --nostdlib --nostdinc \
   -I$(SDCC_PREFIX)/include/pic16 -I$(SDCC_PREFIX)/include -I$(FIRMWARE) \
   -Ifirmware --obanksel=9 --optimize-cmp --optimize-df --denable-peeps \
-  --fomit-frame-pointer $(OPTIONS)
+  --fomit-frame-pointer --ivt-loc=0x800 $(OPTIONS)
 
 # What is in no hurry is compiled to byte code: half the size, ten times slower.
 BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/buttons.c lathe/homing.c \
@@ -24,8 +24,10 @@ FIRMWARE_C := $(filter-out $(BYTE_C),$(wildcard firmware/*.c firmware/*/*.c))
 FIRMWARE_ASM := $(wildcard firmware/*.asm firmware/*/*.asm)
 FIRMWARE_H := $(wildcard firmware/*.h firmware/*/*.h)
 FIRMWARE_INC := $(wildcard firmware/*/*.inc)
+ASM_INCLUDES := -I firmware/bytecode -I firmware/loader
 COMPILED := $(FIRMWARE_C:firmware/%.c=$(OBJECTS)/%.asm)
-FIRMWARE_O := $(FIRMWARE_ASM:firmware/%.asm=$(OBJECTS)/%.o) \
+FIRMWARE_O := $(patsubst firmware/%.asm,$(OBJECTS)/%.o, \
+  $(filter-out firmware/startup.asm,$(FIRMWARE_ASM))) \
   $(OBJECTS)/compiled.o $(OBJECTS)/byte_code.o $(OBJECTS)/sfr.o
 SHRINK := $(wildcard firmware/toolchain/shrink_*.py)
 BYTE_TOOLS := $(wildcard firmware/toolchain/*bytecode*.py)
@@ -81,13 +83,25 @@ $(OBJECTS)/compiled.o: $(COMPILED) $(FIRMWARE_ASM) $(OBJECTS)/byte_code.asm \
 $(OBJECTS)/%.o: firmware/%.asm $(FIRMWARE_INC) | $(SETUP_STAMP)
 	@mkdir -p $(@D)
 	@echo "gpasm  $<"
-	@gpasm -p$(CHIP) -w2 -I firmware/bytecode -c $< -o $@
+	@gpasm -p$(CHIP) -w2 $(ASM_INCLUDES) -c $< -o $@
+
+# Linked twice: the head of the program holds the CRC of what the first link
+# has put behind it, see seal_program.py.
+LINK := gplink -q -c -m -s firmware/tornillo.lkr
+SEAL := python3 firmware/toolchain/seal_program.py
 
 $(FIRMWARE)/tornillo.hex $(FIRMWARE)/tornillo.cod $(FIRMWARE)/tornillo.map &: \
-  $(FIRMWARE_O) firmware/tornillo.lkr
+  $(FIRMWARE_O) firmware/startup.asm firmware/tornillo.lkr firmware/link/protocol.toml \
+  firmware/toolchain/seal_program.py
 	@echo "gplink $(FIRMWARE)/tornillo.hex"
-	@gplink -q -c -m -s firmware/tornillo.lkr -o $(FIRMWARE)/tornillo.hex \
+	@$(SEAL) -o $(OBJECTS)/open/seal.inc firmware/link/protocol.toml
+	@gpasm -p$(CHIP) -w2 -I $(OBJECTS)/open -c firmware/startup.asm -o $(OBJECTS)/open/startup.o
+	@$(LINK) -o $(OBJECTS)/open/tornillo.hex $(OBJECTS)/open/startup.o \
 	  $(FIRMWARE_O) $(SDCC_PREFIX)/lib/libsdcc.lib
+	@$(SEAL) -o $(OBJECTS)/seal.inc firmware/link/protocol.toml $(OBJECTS)/open/tornillo.hex
+	@gpasm -p$(CHIP) -w2 -I $(OBJECTS) -c firmware/startup.asm -o $(OBJECTS)/startup.o
+	@$(LINK) -o $(FIRMWARE)/tornillo.hex $(OBJECTS)/startup.o $(FIRMWARE_O) \
+	  $(SDCC_PREFIX)/lib/libsdcc.lib
 
 $(FIRMWARE)/size.json: $(FIRMWARE)/tornillo.hex \
   firmware/toolchain/report_size.py firmware/toolchain/stack_depth.py

@@ -4,7 +4,7 @@
 #include "board.h"         /* pin directions */
 #include "lathe/guard.h"   /* guard_tick */
 #include "lathe/machine.h" /* the machine */
-#include "link/commands.h" /* reset cause */
+#include "link/commands.h" /* reset cause, leaving */
 #include "link/frame.h"    /* frame_poll */
 #include "link/protocol.h" /* reset causes */
 #include "motion/path.h"   /* moves */
@@ -21,7 +21,8 @@
  * Configuration words. 20 MHz crystal / 5 -> 4 MHz -> 96 MHz PLL: / 2 gives
  * the 48 MHz of the core (12 MIPS) and of USB. Brown-out at 4.33 V, because
  * 48 MHz needs 4.2 V. Watchdog 4 ms x 64 = 256 ms. Low-voltage programming
- * off: RB5 is a limit switch.
+ * off: RB5 is a limit switch. The boot block, where the loader lives, cannot
+ * be written by any program.
  */
 /* clang-format off */
 #pragma config PLLDIV=5, CPUDIV=OSC1_PLL2, USBDIV=2, FOSC=HSPLL_HS
@@ -29,7 +30,7 @@
 #pragma config WDT=ON, WDTPS=64, CCP2MX=ON, PBADEN=OFF, LPT1OSC=OFF
 #pragma config MCLRE=ON, STVREN=ON, LVP=OFF, ICPRT=OFF, XINST=OFF, DEBUG=OFF
 #pragma config CP0=OFF, CP1=OFF, CP2=OFF, CP3=OFF, CPB=OFF, CPD=OFF
-#pragma config WRT0=OFF, WRT1=OFF, WRT2=OFF, WRT3=OFF, WRTB=OFF, WRTC=OFF
+#pragma config WRT0=OFF, WRT1=OFF, WRT2=OFF, WRT3=OFF, WRTB=ON, WRTC=OFF
 #pragma config WRTD=OFF, EBTR0=OFF, EBTR1=OFF, EBTR2=OFF, EBTR3=OFF
 #pragma config EBTRB=OFF
 /* clang-format on */
@@ -116,6 +117,9 @@ static void set_up_pins(void)
     PORTE |= PORTE_RDPU;
 }
 
+/* startup.asm; never returns. */
+void loader_enter(void);
+
 /* Byte code takes 0.3 ms a turn, so what decides is asked when an input has
    changed or the guard has stopped something, and else every 4 ms. Motion and
    frames are served all the time. */
@@ -131,6 +135,9 @@ static void serve(void)
             seen = inputs_state;
             machine_poll();
             led_poll();
+            if (commands_leaving && !--commands_leaving) {
+                loader_enter();
+            }
         }
     }
     if (machine_state != STATE_IDLE && machine_state != STATE_ALARM) {

@@ -23,6 +23,10 @@
 #include "tick.h"             /* uptime */
 
 uint8_t commands_reset_cause;
+uint8_t commands_leaving;
+
+/* Of the main loop, 4 ms each: 50 ms for the answer to reach the host. */
+#define LEAVING_TURNS 13
 
 static void put_u16(uint8_t at, uint16_t value)
 {
@@ -302,6 +306,12 @@ static uint8_t change_store(void)
         return parts_delete(frame_payload[PART_DELETE_SLOT_AT]);
     case COMMAND_SERIAL_SET:
         return serial_set();
+    case COMMAND_LOADER:
+        if (get_u16(LOADER_MAGIC_AT) != LOADER_MAGIC) {
+            return ERROR_OUT_OF_RANGE;
+        }
+        commands_leaving = LEAVING_TURNS;
+        return ERROR_OK;
     default: /* COMMAND_SETTING_SET */
         error = settings_set(frame_payload[SETTING_SET_ID_AT],
                              get_i16(SETTING_SET_VALUE_AT));
@@ -377,6 +387,7 @@ uint8_t commands_execute(void)
     case COMMAND_PART_DELETE:
     case COMMAND_SETTING_SET:
     case COMMAND_SERIAL_SET:
+    case COMMAND_LOADER:
         error = change_store();
         break;
     default:

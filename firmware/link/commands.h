@@ -14,6 +14,9 @@
 /* Why the chip last started, RESET_CAUSE_...; set once by main(). */
 extern uint8_t commands_reset_cause;
 
+/* Turns of 4 ms, or less, until main() goes to the boot loader; 0 = it stays. */
+extern uint8_t commands_leaving;
+
 /* Executes the request in frame_code, frame_payload, frame_length; called by
    frame_poll(). Returns the length of frame_response, at least 1. */
 uint8_t commands_execute(void);

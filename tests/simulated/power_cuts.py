@@ -23,6 +23,7 @@ Action = Callable[[Bench], object]
 
 #: bsf EECON1, WR, the one instruction that begins a write.
 BEGIN_WRITE = b"\xa6\x82"
+PROGRAM_BEGIN = 0x0800  # behind the boot loader
 EECON1, EEPGD = 0xFA6, 0x80
 EEPROM_S, FLASH_S = 4e-3, 2e-3
 PARTS_OF_A_WRITE = (0.25, 0.75)
@@ -34,9 +35,9 @@ class PowerCut(Exception):
 
 
 def sites(bench: Bench) -> list[int]:
-    """Return the addresses of all instructions that begin a write."""
+    """Return the addresses of all instructions of the program that begin a write."""
     flash = bench.chip.save().flash
-    found = [at for at in range(0, FLASH_BYTES, 2) if flash[at : at + 2] == BEGIN_WRITE]
+    found = [at for at in range(PROGRAM_BEGIN, FLASH_BYTES, 2) if flash[at : at + 2] == BEGIN_WRITE]
     assert len(found) == 2, "one for the EEPROM and one for the flash"
     return found
 

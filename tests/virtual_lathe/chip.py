@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 
+from .configuration import write_protection
 from .native_library import (
     InterruptCostC,
     NonvolatileCountsC,
@@ -125,6 +126,8 @@ class Chip:
             raise RuntimeError(f"{self.firmware} does not exist")
         if self._native.vl_load(str(self.firmware).encode()) != 0:
             raise RuntimeError(f"cannot load {self.firmware} (one chip per process, PIC18F4550)")
+        if self.firmware.suffix == ".hex":
+            self._native.vl_write_protection(write_protection(self.firmware))
         self.symbols = Symbols.read(self.firmware.with_suffix(".map"))
 
     # -- time -----------------------------------------------------------------------------------

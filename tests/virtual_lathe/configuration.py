@@ -50,6 +50,12 @@ def read_configuration(hex_file: Path | str) -> dict[int, int]:
     return found
 
 
+def write_protection(hex_file: Path | str) -> int:
+    """Return CONFIG6L and CONFIG6H: a bit that is 0 protects a block; all ones when not given."""
+    found = read_configuration(hex_file)
+    return found.get(10, 0xFF) | found.get(11, 0xFF) << 8
+
+
 def wrong_words(hex_file: Path | str) -> list[str]:
     """Return what in the configuration does not suit the lathe's board; empty is right."""
     found = read_configuration(hex_file)

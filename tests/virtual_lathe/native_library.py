@@ -145,6 +145,7 @@ _BYTES = POINTER(c_uint8)
 _DOUBLES = POINTER(c_double)
 _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_load": (c_int, [c_char_p]),
+    "vl_write_protection": (None, [c_uint]),
     "vl_run": (c_int, [c_uint64]),
     "vl_cycle": (c_uint64, []),
     "vl_program_counter": (c_uint, []),

@@ -62,6 +62,23 @@ def test_eeprom_and_flash_are_written_and_read_back(program: Program) -> None:
     assert 8 <= ms <= 9
 
 
+def _protected(firmware: str) -> list[tuple[bool, bytes]]:
+    chip = Chip(firmware)
+    before = chip.save().flash
+    assert chip.run_until(lambda: chip.level("RD0") == 1, 0.1)
+    assert chip.nonvolatile_counts["flash_erases"] == 4
+    assert chip.nonvolatile_counts["flash_writes"] == 4
+    after = chip.save().flash
+    blocks = (0x0040, 0x0800, 0x2000, 0x6000)
+    return [(before[at : at + 64] == after[at : at + 64], after[at : at + 4]) for at in blocks]
+
+
+def test_protected_blocks_keep_what_they_hold(program: Program) -> None:
+    boot, *blocks = in_new_process(_protected, program("protected"))
+    assert boot[0]
+    assert blocks == [(False, bytes(4)), (True, bytes([1, 2, 3, 4])), (False, bytes(4))]
+
+
 def _reset_bits(firmware: str) -> dict[str, tuple[int, int]]:
     chip = Chip(firmware)
     seen: dict[str, tuple[int, int]] = {}

@@ -33,6 +33,7 @@ constexpr uint64_t CYCLES_PER_SECOND = 12000000;
 constexpr uint64_t CYCLES_PER_MS = CYCLES_PER_SECOND / 1000;
 constexpr uint64_t NEVER = ~uint64_t{0};
 constexpr unsigned FLASH_BYTES = 0x8000;
+constexpr unsigned RAM_BYTES = 0x800;
 constexpr unsigned EEPROM_BYTES = 0x100;
 
 // Addresses of special function registers, names as in the data sheet.

@@ -147,7 +147,7 @@ int vl_reset_chip(int kind)
 void vl_fill_ram(unsigned seed)
 {
     std::mt19937 noise(seed);
-    for (unsigned address = 0; address < 0x800; address++)
+    for (unsigned address = 0; address < lathe::RAM_BYTES; address++)
         chip().cpu->registers[address]->put_value(noise() & 0xFF);
 }
 
@@ -182,6 +182,11 @@ void vl_eeprom_read(uint8_t bytes[256])
 void vl_eeprom_write(const uint8_t bytes[256])
 {
     std::copy_n(bytes, lathe::EEPROM_BYTES, nonvolatile().eeprom);
+}
+
+void vl_write_protection(unsigned config6)
+{
+    nonvolatile().config6 = config6;
 }
 
 void vl_nonvolatile_counts(struct vl_nonvolatile_counts *counts)

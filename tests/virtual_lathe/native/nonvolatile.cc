@@ -26,6 +26,10 @@ enum : uint8_t {
 constexpr unsigned EECON1_ADDRESS = 0xFA6, EECON2_ADDRESS = 0xFA7;
 constexpr unsigned EEDATA_ADDRESS = 0xFA8, EEADR_ADDRESS = 0xFA9;
 constexpr unsigned TBLPTRL_ADDRESS = 0xFF6;
+// CONFIG6L: bits 0..3 = 0, blocks of 8 KB are protected; CONFIG6H: bit 6, the
+// boot block, which block 0 then does not count.
+constexpr unsigned BOOT_BYTES = 0x800, PROTECTED_BLOCK_BYTES = 0x2000;
+constexpr unsigned NO_WRTB = 0x4000;
 constexpr uint8_t EEIF = 0x10;
 constexpr unsigned ERASE_BYTES = 64, WRITE_BYTES = 32;
 // Typical times of the data sheet: parameters D122 (TDEW) and D133A (TIW).
@@ -198,6 +202,14 @@ void Nonvolatile::set_control(uint8_t value)
     unlocked_ = 0;
 }
 
+// Whether the flash at target_ is not write-protected (table 25-4).
+bool Nonvolatile::writable() const
+{
+    if (target_ < BOOT_BYTES)
+        return config6 & NO_WRTB;
+    return config6 >> target_ / PROTECTED_BLOCK_BYTES & 1;
+}
+
 void Nonvolatile::start()
 {
     control_ |= WR;
@@ -227,12 +239,14 @@ void Nonvolatile::finish()
     } else if (control_ & FREE) {
         flash_erases++;
         control_ &= ~FREE;
+        if (!writable())
+            return;
         for (unsigned i = 0; i < ERASE_BYTES; i++)
             set_flash((target_ & ~(ERASE_BYTES - 1)) + i, 0xFF);
     } else {
         flash_writes++;
         unsigned block = target_ & ~(WRITE_BYTES - 1);
-        for (unsigned i = 0; i < WRITE_BYTES; i++)
+        for (unsigned i = 0; i < WRITE_BYTES && writable(); i++)
             set_flash(block + i, flash(block + i) & latches_[i]);
         std::fill_n(latches_, WRITE_BYTES, 0xFF);
     }
@@ -247,6 +261,8 @@ void Nonvolatile::power_lost()
         uint64_t done = chip().now() - began_;
         if (!(control_ & EEPGD)) {
             eeprom[target_] = done < EEPROM_CYCLES / 2 ? 0xFF : data_;
+        } else if (!writable()) {
+            // nothing has changed
         } else if (control_ & FREE) {
             unsigned block = target_ & ~(ERASE_BYTES - 1);
             for (unsigned i = 0; i < ERASE_BYTES * done / FLASH_CYCLES; i++)

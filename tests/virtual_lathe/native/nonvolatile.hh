@@ -24,6 +24,7 @@ public:
     uint32_t flash_erases = 0;   // blocks of 64 bytes
     uint32_t flash_writes = 0;   // blocks of 32 bytes
     uint32_t broken_unlocks = 0; // WR set without a proper 55, AA before
+    uint16_t config6 = 0xFFFF;   // which blocks may be written
 
     uint8_t control() const
     {
@@ -33,6 +34,7 @@ public:
     void unlock(uint8_t value);
 
 private:
+    bool writable() const;
     void start();
     void finish();
     void power_lost();

@@ -71,7 +71,14 @@ void Chip::finish_reset()
 {
     reset_seen_ = false;
     resetting_ = true;
+    std::vector<RegisterValue> ram;
+    for (unsigned i = 0; i < RAM_BYTES; i++)
+        ram.push_back(cpu->registers[i]->value);
     cpu->reset(POR_RESET);
+    // RAM survives everything but the loss of power (table 4-4).
+    for (unsigned i = 0; i < RAM_BYTES && resets.back().second != POR_RESET;
+         i++)
+        cpu->registers[i]->value = ram[i];
     resetting_ = false;
     cpu->rcon.value.put(rcon_next_);
     cpu->registers[STKPTR]->put_value(stkptr_next_);

@@ -70,6 +70,9 @@ void vl_flash_read(unsigned address, uint8_t *bytes, unsigned count);
 void vl_flash_write(unsigned address, const uint8_t *bytes, unsigned count);
 void vl_eeprom_read(uint8_t bytes[256]);
 void vl_eeprom_write(const uint8_t bytes[256]);
+/* CONFIG6L and CONFIG6H, which gpsim does not keep: blocks that the program
+ * cannot write. None are protected until this is called. */
+void vl_write_protection(unsigned config6);
 /* What has been written so far; broken_unlocks counts settings of WR without
  * the sequence 55, AA directly before, which the chip ignores. */
 struct vl_nonvolatile_counts {

@@ -24,6 +24,8 @@ STACK_ADDRESS = 0x700  # "#pragma stack" in main.c
 COMPILED = "tables and registers"
 MAIN = "start and main loop"
 BYTE_CODE = "bytecode"  # interpreter, tables, equal pieces
+#: The boot block is the loader's as a whole: no program can use what is left of it.
+LOADER, BOOT_BLOCK_BYTES = "loader", 0x800
 C_FILES = {
     file.stem: file.parent.name if file.parent.name != "firmware" else MAIN
     for file in Path("firmware").rglob("*.c")
@@ -74,6 +76,9 @@ def rooms(directory: Path) -> tuple[Counter[str], Counter[str], int]:
             stack += size
         elif match[4] == "data" and address < RAM_BYTES:
             ram[owner] += size
+    if flash[LOADER] > BOOT_BLOCK_BYTES:
+        sys.exit(f"the boot loader does not fit: {flash[LOADER]} > {BOOT_BLOCK_BYTES}")
+    flash[LOADER] = BOOT_BLOCK_BYTES
     for owner, file, count in by_file(directory):
         flash[C_FILES[file]] += count
         flash[owner] -= count

@@ -7,12 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tornillo.protocol import Axis, ResetCause, StatusInput
+from virtual_lathe.chip import Reset
 
 from simulated.bench import Bench
+from simulated.power_cuts import PROGRAM_BEGIN
 from simulated.situations import FAR_X, OTHER, Walker
 
 #: Longer than any rest in a run, shorter than any of the moves.
 LOOK_S = 0.06
+#: Longer than the way into the boot loader.
+LOADER_S = 0.2
 #: 50 % in the chip's unit.
 HALF_OVERRIDE = 128
 #: Place of the selected part in EEPROM.
@@ -209,6 +213,17 @@ def _restarted(walker: Walker, before: Seen, _moved: bool) -> None:
     assert bench.chip.variable("machine_slot") == 0xFF
 
 
+def _leaves(walker: Walker, before: Seen, moved: bool) -> None:
+    bench = walker.bench
+    bench.expect_broken("no step lost")
+    unchanged(walker, before, moved)
+    bench.unplug()
+    bench.run(LOADER_S)
+    assert bench.chip.resets[-1][1] is Reset.SOFTWARE
+    assert bench.chip.pc < PROGRAM_BEGIN
+    assert not Seen.now(bench).coils
+
+
 EFFECTS: dict[str, Callable[[Walker, Seen, bool], None]] = {
     "-": unchanged,
     "": unchanged,
@@ -235,4 +250,5 @@ EFFECTS: dict[str, Callable[[Walker, Seen, bool], None]] = {
     "rest": _rests,
     "acknowledge": _acknowledged,
     "restart": _restarted,
+    "leave": _leaves,
 }

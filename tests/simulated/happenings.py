@@ -8,7 +8,7 @@ from functools import partial
 
 from tornillo.errors import ChipError
 from tornillo.image import pack_segments
-from tornillo.protocol import Command, ErrorCode, HomedAxis, SettingId, State
+from tornillo.protocol import LOADER_MAGIC, Command, ErrorCode, HomedAxis, SettingId, State
 from virtual_lathe.chip import NonVolatile, Reset
 from virtual_lathe.machine import AxisName
 
@@ -25,6 +25,7 @@ VALUES: dict[Command, tuple[int, ...]] = {
     Command.PART_READ: (0, 0),
     Command.SETTING_GET: (SettingId.HOME_RATE,),
     Command.SETTING_SET: (SettingId.HOME_RATE, 500),
+    Command.LOADER: (LOADER_MAGIC,),
 }
 #: What a move by hand takes beside its place: rate and patience, rate, nothing.
 AFTER_THE_PLACE = {Command.JOG: (0, PATIENCE_MS), Command.GOTO: (0,), Command.TOUCH: ()}
@@ -33,6 +34,8 @@ RECORDS = (0x00, 0x70)
 ESTOP = 0x04  # of inputs_state
 #: A while in which the idle time does not pass.
 WHILE_S = 0.1
+#: From a reset through the boot loader to the first look at the inputs.
+START_S = 0.1
 #: States that end by themselves.
 UNDER_WAY = (State.HOMING, State.RUNNING, State.MOVING, State.TOUCHING)
 #: A way by hand, steps.
@@ -182,7 +185,7 @@ def _restart(walker: Walker) -> None:
     bench.expect_broken("coil pattern legal", "at most one full step at a time", "no step lost")
     bench.unplug()
     bench.chip.reset(Reset.BROWN_OUT)
-    bench.run(0.03)
+    bench.run(START_S)
 
 
 def _restart_damaged(walker: Walker) -> None:

@@ -8,8 +8,10 @@ from types import SimpleNamespace
 import pytest
 from click.testing import CliRunner, Result
 from console import Tornillo
+from hex_files import firmware_file, program
 from hypothesis import settings
 from scripted_chip import ScriptedChip, ScriptedPort
+from scripted_loader import ScriptedSocket
 
 from tornillo import language
 from tornillo.cli import main
@@ -42,8 +44,35 @@ def chip() -> ScriptedChip:
 def port(chip: ScriptedChip, monkeypatch: pytest.MonkeyPatch) -> ScriptedPort:
     """The port of `chip`, whose clock is the one of the link."""
     port = ScriptedPort(chip)
-    monkeypatch.setattr("tornillo.link.time", SimpleNamespace(monotonic=lambda: port.now))
+    clock = SimpleNamespace(monotonic=lambda: port.now)
+    monkeypatch.setattr("tornillo.link.time", clock)
+    monkeypatch.setattr("tornillo.loader.time", clock)
     return port
+
+
+@pytest.fixture
+def socket(monkeypatch: pytest.MonkeyPatch) -> ScriptedSocket:
+    """A lathe in a USB socket, with a firmware that may be replaced, and its clock."""
+    socket = ScriptedSocket()
+    socket.loader.put(program((0, 1, 0)))
+
+    def sleep(seconds: float) -> None:
+        socket.now += seconds
+
+    clock = SimpleNamespace(monotonic=lambda: socket.now, sleep=sleep)
+    for module in ("link", "loader", "flashing"):
+        monkeypatch.setattr(f"tornillo.{module}.time", clock)
+    monkeypatch.setattr("serial.tools.list_ports.comports", socket.comports)
+    monkeypatch.setattr("tornillo.versions.holders", lambda _port: [])
+    for module in ("flashing", "lathe"):
+        monkeypatch.setattr(f"tornillo.{module}.open_port", socket.open)
+    return socket
+
+
+@pytest.fixture
+def new(tmp_path: Path) -> Path:
+    """The file of firmware 0.2.0."""
+    return firmware_file(tmp_path)
 
 
 @pytest.fixture

@@ -16,7 +16,14 @@ from tornillo import udev
 from tornillo.cli import main
 from tornillo.commands.system import random_number
 from tornillo.errors import TornilloError
-from tornillo.protocol import SERIAL_LENGTH, USB_PRODUCT_ID, USB_VENDOR_ID, Command, State
+from tornillo.protocol import (
+    SERIAL_LENGTH,
+    USB_LOADER_PRODUCT_ID,
+    USB_PRODUCT_ID,
+    USB_VENDOR_ID,
+    Command,
+    State,
+)
 
 RULE = Path(udev.__file__).parent / udev.RULE_FILE
 PLACE = "etc/udev/rules.d/60-tornillo.rules"
@@ -68,10 +75,11 @@ def test_udev_prints_the_rule() -> None:
     assert (result.exit_code, result.stdout) == (0, RULE.read_text(encoding="utf-8"))
 
 
-def test_the_rule_matches_the_lathe_sets_the_rights_and_sends_modem_manager_away() -> None:
+def test_the_rule_matches_lathe_and_loader_sets_the_rights_and_sends_modem_manager_away() -> None:
     lines = udev.rule().replace("\\\n", "").splitlines()
     rules = {line.split(",")[0]: line for line in lines if line.startswith("SUBSYSTEM")}
-    ids = (f'{{idVendor}}=="{USB_VENDOR_ID:04x}"', f'{{idProduct}}=="{USB_PRODUCT_ID:04x}"')
+    products = f"{USB_PRODUCT_ID:04x}|{USB_LOADER_PRODUCT_ID:04x}"
+    ids = (f'{{idVendor}}=="{USB_VENDOR_ID:04x}"', f'{{idProduct}}=="{products}"')
     assert set(rules) == {'SUBSYSTEM=="usb"', 'SUBSYSTEM=="tty"'}
     for rule in rules.values():
         assert all(part in rule for part in ids)

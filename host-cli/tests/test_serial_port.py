@@ -8,11 +8,14 @@ import sys
 import threading
 import tty
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from hex_files import firmware_file, program
 from scripted_chip import ScriptedChip, ScriptedPort
+from scripted_loader import ScriptedSocket, SocketPort
 
 from tornillo import Lathe, Part
 from tornillo.cli import main
@@ -22,12 +25,11 @@ from tornillo.opening import open_port
 LONGEST_ANSWER = 4096
 
 
-@pytest.fixture
-def terminal(chip: ScriptedChip) -> Iterator[str]:
-    """The name of a pseudo-terminal that `chip` answers on."""
+@contextmanager
+def terminal_of(port: ScriptedPort | SocketPort) -> Iterator[str]:
+    """The name of a pseudo-terminal that whoever is behind `port` answers on."""
     chip_side, host_side = pty.openpty()
     tty.setraw(host_side)
-    port = ScriptedPort(chip)
 
     def answer() -> None:
         while data := read_or_nothing(chip_side):
@@ -40,6 +42,13 @@ def terminal(chip: ScriptedChip) -> Iterator[str]:
     os.close(host_side)
     thread.join()
     os.close(chip_side)
+
+
+@pytest.fixture
+def terminal(chip: ScriptedChip) -> Iterator[str]:
+    """The name of a pseudo-terminal that `chip` answers on."""
+    with terminal_of(ScriptedPort(chip)) as name:
+        yield name
 
 
 def read_or_nothing(descriptor: int) -> bytes:
@@ -99,3 +108,14 @@ def test_the_command_line_works_over_a_serial_port(terminal: str) -> None:
     result = CliRunner().invoke(main, ["--port", terminal, "status"])
     assert result.exit_code == 0
     assert "state" in result.stdout
+
+
+def test_the_firmware_is_changed_over_a_serial_port(tmp_path: Path) -> None:
+    socket = ScriptedSocket()
+    socket.loader.put(program((0, 1, 0)))
+    socket.usb, socket.away_s = False, 0.0
+    with terminal_of(SocketPort(socket)) as name:
+        result = CliRunner().invoke(main, ["--port", name, "flash", str(firmware_file(tmp_path))])
+    assert (result.exit_code, result.stderr[:7]) == (0, "Writing")
+    assert "firmware was 0.1.0, is 0.2.0" in result.stdout
+    assert socket.loader.header.version == "0.2.0"

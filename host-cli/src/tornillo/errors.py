@@ -33,6 +33,10 @@ class DrawingError(TornilloError):
         self.marks = marks
 
 
+class FirmwareError(TornilloError):
+    """A firmware file is refused; the message starts with `file:line:`."""
+
+
 class MachineError(TornilloError):
     """A machine file is refused."""
 
@@ -56,6 +60,26 @@ class NoAnswerError(LinkError):
 
 class VersionError(LinkError):
     """The firmware and this tornillo do not belong together; the message names both."""
+
+
+class LoaderError(LinkError):
+    """The chip's boot loader does not answer, or says no."""
+
+
+class InLoaderError(LinkError):
+    """The chip waits in its boot loader, where it cannot cut; `tornillo flash` helps."""
+
+    def __init__(self, port: str) -> None:
+        """Say where, and the two ways out."""
+        super().__init__(
+            _("the lathe at {port} waits in its boot loader and runs no firmware").format(
+                port=port
+            ),
+            _(
+                "give it its firmware with `tornillo flash FILE.hex`, which also goes on with an "
+                "update that was interrupted; or switch the lathe off and on"
+            ),
+        )
 
 
 class AlarmError(TornilloError):

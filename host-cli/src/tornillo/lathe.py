@@ -17,8 +17,8 @@ import struct
 from types import TracebackType
 from typing import Any
 
-from tornillo import versions
-from tornillo.errors import ChipError, LinkError, NoAnswerError, TornilloError
+from tornillo import loader, versions
+from tornillo.errors import ChipError, InLoaderError, LinkError, NoAnswerError, TornilloError
 from tornillo.language import _
 from tornillo.link import Link, Transport
 from tornillo.machine import Machine
@@ -81,14 +81,18 @@ class Lathe(PartStore):
         is told in words when it takes longer, up to 5 s, because the port is held for a moment.
 
         Raises PortError when there is no such port, several lathes to choose from, or it cannot
-        be opened; NoAnswerError and VersionError as `Lathe()`. All say what to do.
+        be opened; InLoaderError when the chip waits in its boot loader; NoAnswerError and
+        VersionError as `Lathe()`. All say what to do.
         """
         name = find_port(port or None)
         serial = open_port(name, notify)
         try:
             return cls(serial)
         except NoAnswerError as error:
+            waits = loader.answers(serial)
             serial.close()
+            if waits:
+                raise InLoaderError(name) from error
             raise versions.no_hello(name, error) from error
         except LinkError:
             serial.close()

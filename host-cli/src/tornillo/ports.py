@@ -8,9 +8,9 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from tornillo.errors import PortError
+from tornillo.errors import InLoaderError, PortError
 from tornillo.language import _
-from tornillo.protocol import USB_PRODUCT_ID, USB_VENDOR_ID
+from tornillo.protocol import USB_LOADER_PRODUCT_ID, USB_PRODUCT_ID, USB_VENDOR_ID
 
 WINDOWS_NAME = re.compile(r"(?:\\\\[.?]\\)?(COM\d+):?", re.IGNORECASE)
 BARE_UNIX_NAME = re.compile(r"tty[A-Z]+\d+|(?:tty|cu)\.\S+")
@@ -42,6 +42,17 @@ def found_lathes() -> list[FoundLathe]:
     )
 
 
+def found_loaders() -> list[str]:
+    """The ports of all chips that wait in their boot loader."""
+    from serial.tools.list_ports import comports
+
+    return sorted(
+        str(port.device)
+        for port in comports()
+        if (port.vid, port.pid) == (USB_VENDOR_ID, USB_LOADER_PRODUCT_ID)
+    )
+
+
 def port_name(text: str) -> str | None:
     r"""`text` as the name of a port, the way this system opens it; None when it is none.
 
@@ -61,7 +72,8 @@ def port_name(text: str) -> str | None:
 def find_port(wanted: str | None = None) -> str:
     """The port that `wanted` names, a port's name or a lathe's serial number; else the only lathe.
 
-    Raises PortError when there is no such lathe, or more than one.
+    Raises PortError when there is no such lathe, or more than one, InLoaderError when there is
+    none but a chip that waits in its boot loader.
     """
     name = None if wanted is None else port_name(wanted)
     if name is not None:
@@ -74,6 +86,9 @@ def find_port(wanted: str | None = None) -> str:
     if len(found) > 1:
         raise _several(found)
     if not found:
+        waiting = found_loaders()
+        if waiting:
+            raise InLoaderError(", ".join(waiting))
         raise _none(wanted, plugged)
     return found[0].port
 

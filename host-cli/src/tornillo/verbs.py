@@ -49,6 +49,7 @@ SECTIONS: dict[str, dict[str, Verb]] = {
         "doctor": Verb("doctor", "Check port, firmware, settings, switches and buttons."),
         "calibrate": Verb("calibrate", "Measure dead steps, switch travel and step size."),
         "settings": Verb("settings", "List, read or change the settings of the lathe."),
+        "flash": Verb("flash", "Give the chip another firmware over USB."),
         "serial": Verb("system", "Show or change the serial number."),
         "udev": Verb("system", "Print or install the udev rule for Linux."),
         "completion": Verb("completion", "Print what completes commands in your shell."),

@@ -5,12 +5,28 @@ The first four bytes of the answer to HELLO never change: protocol version, then
 numbers of the firmware's version.
 """
 
+from typing import NamedTuple
+
 from tornillo.errors import NoAnswerError, VersionError
 from tornillo.holders import holders
 from tornillo.language import _
 from tornillo.protocol import PROTOCOL_VERSION
 
 HEAD = 4  # bytes
+
+
+class Told(NamedTuple):
+    """What every firmware tells in HELLO."""
+
+    protocol: int
+    firmware: str
+
+
+def told(hello: bytes) -> Told | None:
+    """Take the first bytes of HELLO apart; None when they are not there."""
+    if len(hello) < HEAD:
+        return None
+    return Told(hello[0], ".".join(map(str, hello[1:HEAD])))
 
 
 def own_version() -> str:
@@ -29,15 +45,10 @@ def check(hello: bytes) -> None:
     if spoken == PROTOCOL_VERSION:
         return
     own = own_version()
-    if spoken is None or len(hello) < HEAD:
-        raise VersionError(
-            _(
-                "the firmware does not tell its version; tornillo {own} speaks protocol "
-                "{protocol_version}"
-            ).format(own=own, protocol_version=PROTOCOL_VERSION),
-            _update_firmware(own),
-        )
-    firmware = ".".join(map(str, hello[1:HEAD]))
+    found = told(hello)
+    if spoken is None or found is None:
+        raise silent_hello()
+    firmware = found.firmware
     older = spoken < PROTOCOL_VERSION
     message = _(
         "the firmware {firmware} speaks protocol {spoken}, {what} than protocol "
@@ -62,6 +73,18 @@ def check(hello: bytes) -> None:
             "update tornillo: install host-cli from the release that the firmware "
             "{firmware} came with"
         ).format(firmware=firmware),
+    )
+
+
+def silent_hello() -> VersionError:
+    """The answer to HELLO has no version in it."""
+    own = own_version()
+    return VersionError(
+        _(
+            "the firmware does not tell its version; tornillo {own} speaks protocol "
+            "{protocol_version}"
+        ).format(own=own, protocol_version=PROTOCOL_VERSION),
+        _update_firmware(own),
     )
 
 
@@ -121,5 +144,6 @@ def unknown_command_note(firmware: str) -> str:
 def _update_firmware(own: str) -> str:
     """What to do about an old firmware."""
     return _(
-        "update the firmware to that of tornillo {own} (`make firmware`, then a programmer)"
+        "update the firmware to that of tornillo {own} with `tornillo flash`, or with a "
+        "programmer (docs/flashing.md)"
     ).format(own=own)

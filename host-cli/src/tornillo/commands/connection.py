@@ -26,14 +26,14 @@ def connected() -> Iterator[Lathe]:
     from tornillo.commands.interrupting import interrupted
 
     port = click.get_current_context().find_object(str)
-    with Lathe.open(port, notify=_tell) as lathe:
+    with Lathe.open(port, notify=tell) as lathe:
         try:
             yield lathe
         except KeyboardInterrupt:
             raise interrupted(lathe) from None
 
 
-def _tell(line: str) -> None:
+def tell(line: str) -> None:
     """Say why it takes longer."""
     click.echo(line, err=True)
 

@@ -11,7 +11,7 @@ import click
 from tornillo import __version__
 from tornillo.commands.connection import connected, json_option, print_json
 from tornillo.commands.progress import on_terminals
-from tornillo.errors import LinkError, TornilloError, VersionError
+from tornillo.errors import InLoaderError, LinkError, TornilloError, VersionError
 from tornillo.keys import Keys, keyboard
 from tornillo.language import _
 from tornillo.lathe import Lathe
@@ -83,7 +83,7 @@ def _examine(by_hand: bool) -> Iterator[Finding]:
             if by_hand:
                 with keyboard() as keys:
                     yield from _inputs(lathe, keys)
-    except VersionError as error:
+    except (VersionError, InLoaderError) as error:
         yield Finding(_("firmware"), False, str(error), error.remedy)
     except LinkError as error:
         yield Finding(_("link"), False, str(error), error.remedy)

@@ -24,7 +24,8 @@ the lathe when there are several. `TORNILLO_LANG=es` speaks Spanish, `NO_COLOR=1
 | 2 | wrong usage |
 
 Ctrl-C in any verb brings the lathe to a controlled stand: a run is held, homing and moves are
-stopped. The message says which.
+stopped; `flash` leaves the chip in its boot loader and goes on the next time. The message says
+which.
 """,
     "es": """\
 # La línea de comandos
@@ -41,7 +42,8 @@ elige el torno cuando hay varios. `TORNILLO_LANG=es` habla español, `NO_COLOR=1
 | 2 | uso equivocado |
 
 Ctrl-C detiene el torno de manera controlada en cualquier verbo: una marcha queda retenida, la
-búsqueda de referencia y los movimientos se detienen. El mensaje dice qué pasó.
+búsqueda de referencia y los movimientos se detienen; `flash` deja el chip en su cargador de
+arranque y continúa la próxima vez. El mensaje dice qué pasó.
 """,
 }
 DEFAULT = {"en": "Default", "es": "Por omisión"}

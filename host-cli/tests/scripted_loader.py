@@ -12,7 +12,7 @@ from scripted_chip import ScriptedChip, ScriptedPort, refuse
 from serial import SerialException, SerialTimeoutException
 
 from tornillo.errors import PortError
-from tornillo.firmware_file import BLOCK, ERASED, FIRST, Header
+from tornillo.firmware_file import BLOCK, ENDS, ERASED, FIRST, Header
 from tornillo.frames import crc16
 from tornillo.loader import PIECE, LoaderCommand, LoaderResult
 from tornillo.opening import WRITE_TIMEOUT_S, Notify
@@ -38,7 +38,7 @@ class ScriptedLoader:
     def __init__(self) -> None:
         """An erased chip."""
         self.flash = bytearray([ERASED]) * 0x8000
-        self.version, self.board, self.first, self.end = 1, 1, FIRST, 0x7800
+        self.version, self.board, self.first, self.end = 1, 1, FIRST, 0x8000
         self.at_write: Callable[[int], None] = lambda _address: None
         self.not_kept = 0
         self.weak: dict[int, int] = {}
@@ -59,7 +59,7 @@ class ScriptedLoader:
     def whole(self) -> bool:
         """Whether the program may be started."""
         crc, end = self.header.crc, self.header.end
-        return FIRST < end <= self.end and crc16(bytes(self.flash[FIRST + 2 : end])) == crc
+        return end in ENDS and crc16(bytes(self.flash[FIRST + 2 : end])) == crc
 
     def answer(self, packet: bytes) -> bytes:
         """What is answered to one packet."""

@@ -181,7 +181,7 @@ def test_a_firmware_for_another_board_is_refused(tmp_path: Path) -> None:
     assert "take the firmware made for your board" in error.remedy
 
 
-@pytest.mark.parametrize("end", [0x0813, 0x0814, 0x0A63, 0x8002, 0xFFFF])
+@pytest.mark.parametrize("end", [0x0814, 0x08FE, 0x0A63, 0x8000, 0xFFFF])
 def test_an_impossible_end_is_refused(tmp_path: Path, end: int) -> None:
     code = bytearray(program())
     code[2:4] = end.to_bytes(2, "little")

@@ -43,7 +43,7 @@ def firmware(tmp_path: Path) -> Firmware:
 def test_requests_are_packets_as_the_protocol_page_has_them(
     loader: Loader, socket: ScriptedSocket
 ) -> None:
-    assert loader.identify() == Identity(1, 1, 0x0800, 0x7800, whole=True)
+    assert loader.identify() == Identity(1, 1, 0x0800, 0x8000, whole=True)
     assert loader.read(0x0840) == bytes(socket.loader.flash[0x0840:0x0860])
     loader.write(0x0840, bytes(range(PIECE)))
     assert socket.loader.flash[0x0840:0x0860] == bytes(range(PIECE))
@@ -247,7 +247,7 @@ def test_an_update_over_a_bad_cable_ends_in_bounded_time(
         ),
         (
             {"first": 0x1000},
-            "new.hex fills 0x0800 to 0x0A62, and this chip has 0x1000 to 0x7800 for a program",
+            "new.hex fills 0x0800 to 0x0A62, and this chip has 0x1000 to 0x8000 for a program",
             "take the firmware of a release made for this boot loader",
         ),
         (

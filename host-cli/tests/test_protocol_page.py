@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 from scripted_chip import ScriptedChip
+from scripted_loader import ScriptedSocket
 
 from tornillo.frames import Frame, crc16, decode, encode
+from tornillo.loader import Loader, LoaderRefusedError
 from tornillo.machine import Machine
 from tornillo.part import Part
 from tornillo.protocol import FRAME_RESPONSE_BIT, Command
@@ -85,3 +87,24 @@ def test_the_upload_of_the_page_announces_and_sends_that_image() -> None:
     assert payloads[Command.UPLOAD_DATA] == bytes(2) + image[:32]
     stored = payloads[Command.UPLOAD_COMMIT | FRAME_RESPONSE_BIT]
     assert stored == bytes(2) + crc16(image).to_bytes(2, "little")
+
+
+def test_the_packets_of_the_page_are_those_of_host_and_boot_loader(socket: ScriptedSocket) -> None:
+    blocks = re.findall(r"```packets\n(.*?)```", PAGE, re.DOTALL)
+    packets = [bytes.fromhex(line) for block in blocks for line in block.splitlines()]
+    answered: list[bytes] = []
+    answer = socket.loader.answer
+
+    def remember(packet: bytes) -> bytes:
+        answered.extend((packet, answer(packet)))
+        return answered[-1]
+
+    vars(socket.loader)["answer"] = remember
+    socket.in_loader = True
+    loader = Loader(socket.open(socket.port))
+    loader.identify()
+    loader.write(0x0840, bytes(range(32)))
+    loader.read(0x0840)
+    with pytest.raises(LoaderRefusedError):
+        loader.go()
+    assert packets == answered

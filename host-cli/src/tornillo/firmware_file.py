@@ -18,7 +18,8 @@ IDENTITY = b"Tornillo"
 #: The controller boards that this tornillo knows.
 BOARDS = (1,)
 FIRST = 0x0800
-FLASH_END = 0x8000
+#: The loader starts no program that ends before or behind these.
+ENDS = range(0x0900, 0x8000, 2)
 CONFIGURATION = range(0x300000, 0x30000E)
 #: CRC, end, four bytes of program, identity, board, version (three bytes), protocol.
 HEADER = Struct("<HH4x8sBBBBB")
@@ -109,7 +110,7 @@ def _header(file: HexFile) -> Header:
             ),
             _("take the firmware made for your board, or the tornillo of the same release"),
         )
-    if header.end % 2 or not FIRST + HEADER.size <= header.end <= FLASH_END:
+    if header.end not in ENDS:
         what = _("the program is said to end at 0x{end:04X}, which cannot be")
         raise damaged(file.name, file.lines[FIRST], what.format(end=header.end))
     return header

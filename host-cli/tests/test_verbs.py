@@ -133,6 +133,7 @@ def test_verbs_options_and_names_are_completed(
 ) -> None:
     assert completed("re") == ["resume", "reset"]
     assert completed("run", "--f") == ["--follow"]
+    assert completed("flash", "--c") == ["--check"]
     assert completed("settings", "get", "rapid") == ["rapid_rate_x", "rapid_rate_z"]
     assert tornillo("upload", test_bar).exit_code == 0
     assert completed("run", "te") == ["test-bar"]

@@ -19,7 +19,7 @@ from tornillo.loader import (
     LoaderResult,
 )
 
-#: The whole of writing and comparing takes 10 s; with a bad cable no longer than this.
+#: Writing 27 KB takes 3 s, comparing 0.3 s; with a bad cable both no longer than this.
 UPDATE_S = 120.0
 #: How often a block that was not kept, or a program that does not compare, is written.
 BLOCK_TRIES = 3

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hex files of firmware: what is in a good one, and why the others are refused, with the line."""
 
+import re
 from pathlib import Path
 
 import pytest
+from babel.messages.pofile import read_po
 from hex_files import (
     FIRST_LINE,
     LINE,
@@ -15,12 +17,15 @@ from hex_files import (
     record,
 )
 
+from tornillo import language
 from tornillo.errors import FirmwareError
 from tornillo.firmware_file import BLOCK, CONFIGURATION, FIRST, Firmware
 from tornillo.frames import crc16
 from tornillo.intel_hex import read_hex
 from tornillo.protocol import PROTOCOL_VERSION
 
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+CATALOGUE = language.LOCALE / "es" / "LC_MESSAGES" / "tornillo.po"
 GOOD = lines(program())
 DAMAGED = "get it again, or make it anew with `make firmware`"
 OURS = "give the file that `make firmware` leaves at build/firmware/tornillo.hex"
@@ -209,3 +214,19 @@ def test_addresses_are_those_of_the_chip(tmp_path: Path) -> None:
     found = read_hex(str(firmware_file(tmp_path)))
     assert {at for at in found.bytes if at >= 0x8000} == set(CONFIGURATION)
     assert found.lines[FIRST] == 7
+
+
+@pytest.mark.parametrize(
+    ("page", "heading", "number"),
+    [
+        ("flashing.md", "## Files that are refused", 0),
+        ("es/actualizar.md", "## Archivos rechazados", 1),
+    ],
+)
+def test_the_pages_quote_what_is_said(page: str, heading: str, number: int) -> None:
+    section = (DOCS / page).read_text(encoding="utf-8").split(heading)[1].split("\n## ")[0]
+    quoted = re.findall(r'"([^"]+)"', section)
+    with CATALOGUE.open("rb") as file:
+        said = [(str(message.id), str(message.string))[number] for message in read_po(file)]
+    assert len(quoted) == 10
+    assert [words for words in quoted if not any(words in text for text in said)] == []

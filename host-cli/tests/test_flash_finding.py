@@ -129,6 +129,15 @@ def test_without_sockets_the_loader_that_was_not_there_before_is_taken(
     assert_updated(socket)
 
 
+def test_a_link_to_the_port_leads_to_the_socket(
+    socket: ScriptedSocket, new: Path, tmp_path: Path
+) -> None:
+    link = tmp_path / "usb-Tornillo_lathe"
+    link.symlink_to(socket.port)
+    assert tornillo("--port", link, "flash", new).stdout == DONE
+    assert set(socket.opened) == {socket.port}
+
+
 def test_several_chips_are_listed_with_how_to_choose(socket: ScriptedSocket, new: Path) -> None:
     socket.others = [
         entry("/dev/ttyACM1", USB_PRODUCT_ID, "T0000002", "1-3"),

@@ -14,7 +14,7 @@
 /* Why the chip last started, RESET_CAUSE_...; set once by main(). */
 extern uint8_t commands_reset_cause;
 
-/* Turns of 4 ms, or less, until main() goes to the boot loader; 0 = it stays. */
+/* Turns of 4 ms, or less, until main() goes to the boot loader; 0 = never. */
 extern uint8_t commands_leaving;
 
 /* Executes the request in frame_code, frame_payload, frame_length; called by

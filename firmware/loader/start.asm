@@ -1,10 +1,11 @@
 ; Boot loader: vectors, what to start, main loop.
 ; SPDX-License-Identifier: Apache-2.0
 ;
-; After every reset the loader sees whether the program is whole and starts it,
-; 80 ms after the reset. It stays when the program is not whole, when the program asks for
-; it (key in RAM and a RESET instruction), or when HOLD is down while power
-; comes. RCON and STKPTR are left as they are for the program to read.
+; After every reset the loader sees whether the program is whole and starts
+; it, 61 ms after the reset. It stays when the program is not whole, when the
+; program asks for it (key in RAM and a RESET instruction), or when HOLD is
+; down while power comes. RCON and STKPTR are left as they are for the program
+; to read.
 ;
 ; Windings and relays are driven off before anything else: the pull-ups that
 ; keep open buttons up would switch windings on. No interrupt is ever enabled.

@@ -110,7 +110,7 @@ bulk_answer:
         movff   in_stat, EP2_IN
         return
 
-; ---- endpoint 0 ---------------------------------------------------------------
+; ---- endpoint 0 -------------------------------------------------------------
 control_out:
         movf    LOW EP0_OUT, W, B
         andlw   PID_MASK

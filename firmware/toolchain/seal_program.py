@@ -4,8 +4,8 @@
 
 usage: seal_program.py [-o SEAL.INC] PROTOCOL.TOML [HEX]
 
-Without HEX, for a first link, the CRC and the end are 0 and 0x0900. The boot loader begins a program
-only when the CRC-16 fits everything from 0x0802 to the end (firmware/loader/README.md).
+Without HEX, for a first link, the CRC and the end are 0 and 0x0900. The boot loader begins a
+program only when the CRC-16 fits everything from 0x0802 to the end (firmware/loader/README.md).
 """
 
 import argparse

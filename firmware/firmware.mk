@@ -12,7 +12,7 @@ SDCC := $(SDCC_PREFIX)/bin/sdcc
 SDCC_FLAGS := -mpic16 -p$(CHIP) --no-warn-non-free --nostdlib --nostdinc \
   -I$(SDCC_PREFIX)/include/pic16 -I$(SDCC_PREFIX)/include -I$(FIRMWARE) \
   -Ifirmware --obanksel=9 --optimize-cmp --optimize-df --denable-peeps \
-  --fomit-frame-pointer --ivt-loc=0x800 $(OPTIONS)
+  --fomit-frame-pointer $(OPTIONS)
 
 # What is in no hurry is compiled to byte code: half the size, ten times slower.
 BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/buttons.c lathe/homing.c \

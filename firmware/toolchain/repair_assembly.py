@@ -6,6 +6,8 @@
   without the flag that says "banked", although the bank has been selected just
   before; the assembler then silently takes the access bank. The flag is added.
 - A test of a sign bit goes through the carry, in four instructions: two do.
+- An interrupt vector lies at the chip's; behind the boot loader it belongs 0x800 higher. The
+  compiler has an option for that, which prints a line for every file.
 - An initialised variable would need a copying start-up, which this firmware does
   not have. It is refused.
 
@@ -22,11 +24,12 @@ BIT_WITHOUT_BANK = re.compile(
 SIGN_TEST = re.compile(
     r"^\tBSF\tSTATUS, 0\n\tBTFSS\t(\S.*), 7\n\tBCF\tSTATUS, 0\n\t(BNC|BC)\t(\S+)$", re.MULTILINE
 )
+VECTOR = re.compile(r"^(\w+_ivec_\w+\s+code\s+)0X0000([01]8)$", re.MULTILINE)
 INITIALISED = re.compile(r"^\w*\s+idata\b", re.IGNORECASE)
 
 
 def repair(source: str) -> str:
-    """Return the assembly text with the missing bank flags added.
+    """Return the assembly text repaired.
 
     Raises ValueError when the text has an initialised variable.
     """
@@ -35,7 +38,7 @@ def repair(source: str) -> str:
         if INITIALISED.match(line):
             raise ValueError(f"{number}: initialised variable; set it in the room's init function")
         lines.append(BIT_WITHOUT_BANK.sub(r"\1, B", line))
-    return SIGN_TEST.sub(_test_bit, "\n".join(lines) + "\n")
+    return VECTOR.sub(r"\g<1>0X0008\2", SIGN_TEST.sub(_test_bit, "\n".join(lines) + "\n"))
 
 
 def _test_bit(match: re.Match[str]) -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -12,6 +13,7 @@ from simulated import little_pin
 from simulated.bench import Bench
 from simulated.processes import branch, on_a_new_chip
 from simulated.standing import COILS, REST_CYCLES, Holds, Limits, assert_nothing_moves, entries
+from tornillo.errors import ChipError
 from tornillo.protocol import Alarm, Axis, ErrorCode, State
 from virtual_lathe.chip import CYCLES_PER_SECOND
 from virtual_lathe.machine import AxisName
@@ -51,7 +53,10 @@ def test_hold_brakes_within_the_braking_distance_and_run_goes_on_without_losing_
             if holds % 2:
                 bench.press("hold", 0.006)
             else:
-                bench.host.hold()
+                with suppress(ChipError):  # when the part ends first
+                    bench.host.hold()
+            if bench.is_in(State.IDLE):
+                break
             braked = max(braked, following.come_to_a_stand())
             assert bench.position == (bench.axis(Axis.X).slide, bench.axis(Axis.Z).slide)
             if holds % 2:

@@ -16,6 +16,7 @@ from tornillo.chips import Chip, Kind
 from tornillo.errors import LinkError, LoaderError, PortError, TornilloError
 from tornillo.firmware_file import BLOCK, Firmware
 from tornillo.flashing import Stage, Update
+from tornillo.updating import Progress
 from virtual_lathe.chip import NonVolatile
 from virtual_lathe.serial_port import SerialPort
 from virtual_lathe.usb_host import UsbError
@@ -65,10 +66,10 @@ class Desk:
             raise PortError(str(error), "plug it in") from error
         return Port(host)
 
-    def update(self, progress: object = None, kind: Kind = Kind.UNKNOWN) -> Update:
+    def update(self, progress: Progress | None = None, kind: Kind = Kind.UNKNOWN) -> Update:
         """Update to the firmware that was built; raises what the update raises."""
         update = Update(Firmware.load(str(FIRMWARE)), Chip("virtual", kind, "", ""))
-        update.run(progress)  # type: ignore[arg-type]
+        update.run(progress)
         return update
 
 

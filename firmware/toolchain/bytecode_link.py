@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from bytecode_model import Code, Function, Label
+from bytecode_model import Code, Function, Label, Place
 from bytecode_operations import (
     CODE_MAX,
     FIRST_CALL,
@@ -24,6 +24,7 @@ from bytecode_optimise import growth
 from bytecode_types import BytecodeError
 
 NATIVES_MAX = 128
+LOCALS = "locals"  # label of all local variables
 SHORT_REACH = range(-128, 128)
 
 
@@ -90,6 +91,16 @@ class Frames:
                 found[f"{name}.{variable}"] = at
                 at += kind.size
         return found
+
+    def settle(self) -> None:
+        """Give the operations addresses: equal ones of different functions become equal."""
+        at = self.places()
+        for function in self.functions.values():
+            for index, line in enumerate(function.code):
+                operand = line.operand if isinstance(line, Code) else None
+                if isinstance(line, Code) and isinstance(operand, Place) and operand.symbol in at:
+                    place = Place(LOCALS, at[operand.symbol] + operand.offset)
+                    function.code[index] = Code(line.op, place, line.extra)
 
 
 Item = int | tuple[str, str]
@@ -247,10 +258,9 @@ def write(modules: list[Module], layout: Layout, frames: Frames, entries: list[s
     """Return the assembly: stubs, code, tables, variables."""
     defined = {label for module in modules for label, _, _ in module.variables}
     defined |= {label for module in modules for label in module.tables}
-    places = frames.places()
     items = [layout.pair_items(), layout.items()]
     names = {item[1] for part in items for item in part if isinstance(item, tuple)}
-    symbols = {name.partition("+")[0] for name in names} - set(places)
+    symbols = {name.partition("+")[0] for name in names} - {LOCALS}
     natives = [f"_{name}" for name in layout.natives]
     outside = sorted((symbols | set(natives)) - defined)
     lines = ["\tlist\tp=18f4550", "\tradix\tdec", "\tinclude\t<p18f4550.inc>"]
@@ -269,21 +279,21 @@ def write(modules: list[Module], layout: Layout, frames: Frames, entries: list[s
     for module in modules:
         for label, values in module.tables.items():
             lines.append(f"{label}:")
-            lines += _bytes(list(values), places)
+            lines += _bytes(list(values))
     lines.append("byte_natives:")
     for name in natives:
         lines.append(f"\tdb\tLOW({name}), HIGH({name})")
     lines.append("byte_pairs:")
-    lines += _bytes(items[0], places)
+    lines += _bytes(items[0])
     lines.append("byte_code_area\tcode")
     lines.append("byte_code:")
-    lines += _bytes(items[1], places)
+    lines += _bytes(items[1])
     lines += ["\tend", ""]
     return "\n".join(lines)
 
 
 def _variables(modules: list[Module], frame: int) -> list[str]:
-    lines = ["byte_locals\tudata", f"locals\tres\t{max(frame, 1)}"]
+    lines = ["byte_locals\tudata", f"{LOCALS}\tres\t{max(frame, 1)}"]
     for module in modules:
         for number, (label, count, _) in enumerate(module.variables):
             # A section each, so that the linker can fill what other sections leave.
@@ -291,17 +301,13 @@ def _variables(modules: list[Module], frame: int) -> list[str]:
     return lines
 
 
-def _bytes(items: list[Item], places: dict[str, int]) -> list[str]:
+def _bytes(items: list[Item]) -> list[str]:
     """Return db lines of an even number of bytes; gpasm fills up odd ones."""
     texts = []
     for item in items:
         if isinstance(item, tuple):
             symbol, plus, offset = item[1].partition("+")
-            if symbol in places:
-                number = places[symbol] + (eval_sum(offset) if plus else 0)
-                texts.append(f"{item[0]}(locals+{number})")
-            else:
-                texts.append(f"{item[0]}({symbol}+{eval_sum(offset) if plus else 0})")
+            texts.append(f"{item[0]}({symbol}+{eval_sum(offset) if plus else 0})")
         else:
             texts.append(f"0x{item:02x}")
     return [f"\tdb\t{', '.join(texts[i : i + 8])}" for i in range(0, len(texts), 8)]

@@ -180,6 +180,7 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, A
         for name in function.calls - own
     }
     frames = Frames(functions, reach)
+    frames.settle()
     Pieces(functions).fold()
     natives = sorted({str(line.operand) for f in functions for line in f.natives()})
     layout = Layout(functions, natives)

@@ -233,13 +233,16 @@ memory_operations:
 ; W, TABLAT = next byte of an operation.
 operand:
         tblrd   *+
-        btfsc   resume_at + 1, 7, ACCESS
-        bra     operand_read
-        movff   resume_at + 1, TBLPTRH
-        movff   resume_at, TBLPTRL
-        setf    resume_at + 1, ACCESS
-operand_read:
+        btfss   resume_at + 1, 7, ACCESS
+        rcall   to_resume
         movf    TABLAT, W, ACCESS
+        return
+
+; TABLAT = next byte of a jump; W and STATUS stay.
+distance:
+        tblrd   *+
+        btfss   resume_at + 1, 7, ACCESS
+        bra     to_resume
         return
 
 op_native8:
@@ -262,7 +265,7 @@ native:
         btfsc   STATUS, C, ACCESS
         incf    TBLPTRH, F, ACCESS
         rcall   native_call
-go_on:
+to_resume:
         movff   resume_at, TBLPTRL
         movff   resume_at + 1, TBLPTRH
         setf    resume_at + 1, ACCESS

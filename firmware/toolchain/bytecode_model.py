@@ -44,6 +44,9 @@ class Label:
     name: str
 
 
+Line = Code | Label
+
+
 @dataclass
 class Function:
     """A compiled function; `locals` has its variables, arguments first."""
@@ -51,11 +54,16 @@ class Function:
     name: str
     parameters: list[str]
     result: Type
-    code: list[Code | Label] = field(default_factory=list)
+    code: list[Line] = field(default_factory=list)
     locals: dict[str, Type] = field(default_factory=dict)
     calls: set[str] = field(default_factory=set)
     module: str = ""  # the source file
     meanwhile: set[tuple[str, str]] = field(default_factory=set)  # arguments wait for a call
+    absorbed: set[str] = field(default_factory=set)  # symbols of functions that were put in
+
+    def own_symbols(self) -> set[str]:
+        """Return the symbols of the local variables."""
+        return self.absorbed | {f"{self.name}.{variable}" for variable in self.locals}
 
     def natives(self) -> list[Code]:
         """Return the calls of native functions, once the operations are the chip's."""

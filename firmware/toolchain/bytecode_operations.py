@@ -90,7 +90,7 @@ def _constant(op: str, operand: Place | int | str | None) -> list[Code]:
 
 def size(code: Code | Label) -> int:
     """Return the bytes of an operation; jumps in their short form."""
-    if isinstance(code, Label):
+    if isinstance(code, Label) or code.op == "into":
         return 0
     if code.op in NO_OPERAND:
         return 1

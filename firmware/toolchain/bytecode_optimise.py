@@ -6,37 +6,31 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Sequence
 
+from bytecode_flow import drop_needless
 from bytecode_model import Code, Function, Label
 from bytecode_operations import ENDS, INVERSE, JUMPS, select, size
 
 Line = Code | Label
 Lines = list[Line]
-KEEPING = {
-    "case",
-    "cmpk",
-    "cmpkw",
-    "cmps",
-    "cmp8",
-    "cmp16",
-    "push",
-    "push8",
-    "clrwdt",
-    "st8",
-    "st16",
-}
-NARROW = {"ld8", "native8", "low", "ld0", "ld1", "ldk", "ldi8", "ldx8", "ldt8"}
 RETURNS = {"ret", "ret0", "ret1", "retk"}
 PIECE_MAX = 14  # operations
 
 
-def optimise(function: Function, volatile: set[str]) -> None:
-    """Shorten one function."""
+def choose(function: Function) -> None:
+    """Turn what the compiler wrote into operations of the chip."""
     lines: Lines = []
     for line in function.code:
         lines += [line] if isinstance(line, Label) else select(line)
+    function.code = lines
+
+
+def optimise(function: Function, volatile: set[str], takes_a: set[str]) -> None:
+    """Shorten one function; `takes_a`: functions with an argument in A."""
+    lines = function.code
+    own = function.own_symbols()
     while True:
         before = list(lines)
-        lines = _drop_reloads(lines, volatile)
+        lines = drop_needless(lines, volatile, own, takes_a, function.result.size > 0)
         lines = _thread_jumps(lines)
         lines = _drop_unreachable(lines)
         lines = _drop_unused_labels(lines)
@@ -44,29 +38,6 @@ def optimise(function: Function, volatile: set[str]) -> None:
         if lines == before:
             break
     function.code = lines
-
-
-def _drop_reloads(lines: Lines, volatile: set[str]) -> Lines:
-    """Drop loads of what is in A already, and `low` where the high byte is 0."""
-    kept: Lines = []
-    held: Code | None = None  # the load that A would come from
-    narrow = False  # the high byte of A is 0
-    for line in lines:
-        if isinstance(line, Label):
-            held, narrow = None, False
-        elif line == held or (line.op == "low" and narrow):
-            continue
-        elif line.op == "st16" or (line.op == "st8" and narrow):
-            held = Code(line.op.replace("st", "ld"), line.operand)
-        elif line.op not in KEEPING and line.op not in INVERSE:
-            held = line if line.op in ("ld8", "ld16") else None
-            narrow = line.op in NARROW
-        elif line.op == "st8" and held is not None and held.operand == line.operand:
-            held = None
-        if held is not None and getattr(held.operand, "symbol", None) in volatile:
-            held = None
-        kept.append(line)
-    return kept
 
 
 def _targets(lines: Lines) -> dict[str, int]:

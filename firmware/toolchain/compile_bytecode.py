@@ -21,9 +21,12 @@ from pathlib import Path
 from typing import Any
 
 from bytecode_compile import Compiler
-from bytecode_link import Frames, Layout, Module, stack_use, write
+from bytecode_frames import Frames
+from bytecode_inline import inline
+from bytecode_layout import Layout
+from bytecode_link import Module, stack_use, write
 from bytecode_model import Function, Place, Signature, Unit
-from bytecode_optimise import Pieces, optimise
+from bytecode_optimise import Pieces, choose, optimise
 from bytecode_types import BytecodeError, Types
 from pycparser import c_ast, c_parser
 
@@ -162,9 +165,12 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, A
         outside = {source.unit.renamed.get(n, n) for n in source.unit.functions} - own
         outside |= {"_mulint", "_divuint", "_moduint"}
         for node in source.definitions:
-            function = Compiler(source.unit, outside, node).function
-            optimise(function, source.volatile)
-            functions.append(function)
+            functions.append(Compiler(source.unit, outside, node).function)
+    volatile = {label for source in sources for label in source.volatile}
+    takes_a = {function.name for function in functions if function.parameters}
+    for function in functions:
+        choose(function)
+        optimise(function, volatile, takes_a)
     called = {name for reached in native.calls.values() for name in reached}
     entries = sorted(name for name in own if f"_{name}" in called)
     interrupted = {name[1:] for name in native.reach(INTERRUPT)} & own
@@ -180,7 +186,10 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, A
         for name in function.calls - own
     }
     frames = Frames(functions, reach)
-    frames.settle()
+    functions = inline(functions, set(entries) | set().union(*reach.values()))
+    for function in functions:
+        optimise(function, volatile, takes_a)
+    frames.settle(functions)
     Pieces(functions).fold()
     natives = sorted({str(line.operand) for f in functions for line in f.natives()})
     layout = Layout(functions, natives)

@@ -25,11 +25,13 @@
 
         global  byte_enter
 
-; The numbers below are those of bytecode_operations.py.
-FIRST_MEMORY    equ     0x50
-MEMORY_NUMBER   equ     74              ; of the first one in the table below
-FIRST_CALL      equ     0x88
-FIRST_PAIR      equ     0xA8
+        extern  byte_first_pair         ; address = first operation from there
+
+; The numbers below are those of bytecode_operations.py, which are places in
+; the table below.
+FIRST_MEMORY    equ     55
+FIRST_RARE      equ     FIRST_MEMORY    ; memory operations have a table
+FIRST_CALL      equ     FIRST_MEMORY + 56
 
 interpreter_data        udata_acs
 resume_at       res     2
@@ -74,7 +76,10 @@ op_ret:
 ; Near the branches that lead here: those reach 128 instructions.
 call_function:                          ; W = bits 8 to 12 of the offset
         movwf   PRODL, ACCESS
-        rcall   operand
+        tblrd   *+                      ; as operand does, for speed
+        btfss   resume_at + 1, 7, ACCESS
+        rcall   to_resume
+        movf    TABLAT, W, ACCESS
         movff   TBLPTRL, POSTDEC1
         movff   TBLPTRH, POSTDEC1
         addlw   LOW(byte_code)
@@ -88,16 +93,29 @@ memory:                                 ; W = 8 * operation + bits 8 to 10
         movwf   FSR0H, ACCESS
         rrncf   WREG, W, ACCESS
         rrncf   WREG, W, ACCESS
-        rrncf   WREG, W, ACCESS
-        andlw   0x1F
-        addlw   MEMORY_NUMBER
+        andlw   0x0E                    ; 2 * operation
+        addlw   LOW(memory_operations)
         movwf   PRODL, ACCESS
+        movlw   HIGH(memory_operations)
+        btfsc   STATUS, C, ACCESS
+        addlw   1
+        movwf   PCLATH, ACCESS
         movlw   7
         andwf   FSR0H, F, ACCESS
-        rcall   operand
-        movwf   FSR0L, ACCESS
+        tblrd   *+                      ; as operand does, for speed
+        btfss   resume_at + 1, 7, ACCESS
+        rcall   to_resume
+        movff   TABLAT, FSR0L
         movf    PRODL, W, ACCESS
-        bra     jump
+        movwf   PCL, ACCESS
+memory_operations:
+        bra     op_ld8
+        bra     op_ld16
+        bra     op_st8
+        bra     op_st16
+        bra     op_add16
+        bra     op_sub16
+        bra     op_cmp16
 
 ; An operation of two bytes from the table: its second byte is taken there, by
 ; operand, which then leads back.
@@ -112,8 +130,6 @@ pair:                                   ; W = number of the pair
         btfsc   STATUS, C, ACCESS
         incf    TBLPTRH, F, ACCESS
         tblrd   *+
-        movf    TABLAT, W, ACCESS
-        addlw   -FIRST_PAIR
         bra     execute
 
 op_ld1:
@@ -127,11 +143,12 @@ byte_result:                            ; A = W
 
 next:
         tblrd   *+
-        movlw   FIRST_PAIR
+        movlw   LOW(byte_first_pair)
         subwf   TABLAT, W, ACCESS
         bc      pair
-execute:                                ; W = operation - FIRST_PAIR
-        addlw   FIRST_PAIR - FIRST_CALL
+execute:                                ; TABLAT = operation
+        movf    TABLAT, W, ACCESS
+        addlw   -FIRST_CALL
         bc      call_function
         addlw   FIRST_CALL - FIRST_MEMORY
         bc      memory
@@ -156,23 +173,17 @@ operations:
         bra     op_dec
         bra     op_push
         bra     op_push8
-        bra     op_adds
         bra     op_subs
-        bra     op_ands
-        bra     op_ors
-        bra     op_xors
         bra     op_cmps
         bra     op_neg
-        bra     op_com
         bra     op_low
         bra     op_ldi8
-        bra     op_ldi16
-        bra     op_sti8
-        bra     op_sti16
         bra     op_clrwdt
+        bra     op_drop1
+        bra     op_drop2
+        bra     op_drop4
         bra     op_shl
         bra     op_shr
-        bra     op_sar
         bra     op_ldk
         bra     op_ldkn
         bra     op_addk
@@ -181,11 +192,9 @@ operations:
         bra     op_retk
         bra     op_andk
         bra     op_ork
-        bra     op_xork
         bra     op_ldkw
         bra     op_addkw
         bra     op_cmpkw
-        bra     op_andkw
         bra     op_case
         bra     op_jmp
         bra     op_jz
@@ -204,31 +213,39 @@ operations:
         bra     op_native8
         bra     op_native16
         bra     op_ldt8
-        bra     op_ldt16
-        bra     op_drop1
-        bra     op_drop2
-        bra     op_drop3
-        bra     op_drop4
         bra     op_add8
+        bra     op_cmp8
+        bra     op_ldx8
+        bra     op_ldx16
+        bra     op_stx8
+        bra     op_rare
+rare_operations:
+        bra     op_adds
+        bra     op_ands
+        bra     op_ors
+        bra     op_xors
+        bra     op_com
+        bra     op_ldi16
+        bra     op_sti8
+        bra     op_sti16
+        bra     op_drop3
+        bra     op_sar
+        bra     op_xork
+        bra     op_andkw
+        bra     op_ldt16
+        bra     op_stx16
         bra     op_sub8
         bra     op_and8
         bra     op_or8
         bra     op_xor8
-        bra     op_cmp8
         bra     op_and16
         bra     op_or16
-        bra     op_ldx8
-        bra     op_ldx16
-        bra     op_stx8
-        bra     op_stx16
-memory_operations:
-        bra     op_ld8
-        bra     op_ld16
-        bra     op_st8
-        bra     op_st16
-        bra     op_add16
-        bra     op_sub16
-        bra     op_cmp16
+
+; Operations that are seldom used are one byte longer.
+op_rare:
+        rcall   operand
+        addlw   FIRST_RARE
+        bra     jump
 
 ; W, TABLAT = next byte of an operation.
 operand:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from bytecode_model import Code, Label, Place
+from bytecode_model import Code, Label, Place, Whole
 from bytecode_operations import ENDS, INVERSE, JUMPS, select
 
 Line = Code | Label
@@ -43,25 +43,23 @@ def constant(value: int) -> Code:
     return select(Code("ldk", value))[0]
 
 
-def drop_needless(
-    lines: Lines, volatile: set[str], own: Collection[str], takes_a: Collection[str], result: bool
-) -> Lines:
+def drop_needless(lines: Lines, whole: Whole, own: Collection[str], result: bool) -> Lines:
     """Drop needless loads, stores and arithmetic.
 
-    `own`: symbols of the local variables, `takes_a`: functions with an argument
-    in A, `result`: whether the function returns something.
+    `own`: symbols of the local variables, `result`: whether the function returns
+    something.
     """
-    lines = _drop_known(lines, volatile)
-    return _drop_unwanted(lines, volatile, own, takes_a, result)
+    lines = _drop_known(lines, whole)
+    return _drop_unwanted(lines, whole, own, result)
 
 
 # --- forwards: what A holds ----------------------------------------------------
 
 
-def _drop_known(lines: Lines, volatile: set[str]) -> Lines:
+def _drop_known(lines: Lines, whole: Whole) -> Lines:
     """Drop loads of what is in A already, stores of what is there, `low` of a number of 8 bits."""
     kept: Lines = []
-    for line, facts in zip(lines, _Forwards(lines, volatile).arriving(), strict=True):
+    for line, facts in zip(lines, _Forwards(lines, whole).arriving(), strict=True):
         if isinstance(line, Code) and facts is not None:
             if line.op == "retk" and Code("ldk", line.operand) in facts:
                 kept.append(Code("ret"))
@@ -80,9 +78,9 @@ def _drop_known(lines: Lines, volatile: set[str]) -> Lines:
 class _Forwards:
     """Follows all ways through a function until no way tells anything new."""
 
-    def __init__(self, lines: Lines, volatile: set[str]) -> None:
+    def __init__(self, lines: Lines, whole: Whole) -> None:
         self.lines = lines
-        self.volatile = volatile
+        self.whole = whole
         self.at_label: dict[str, Facts] = {}
         self.changed = True
 
@@ -125,7 +123,7 @@ class _Forwards:
             )
         number = line.operand if line.op in ("cmpk", "cmpkw") else None
         return (
-            None if line.op in ENDS else _after(line, now, self.volatile),
+            None if line.op in ENDS else _after(line, now, self.whole),
             number if isinstance(number, int) else None,
         )
 
@@ -147,24 +145,25 @@ def _constant_facts(load: Code) -> Facts:
     return frozenset([load] if wide else [load, NARROW])
 
 
-def _after(line: Code, facts: Facts, volatile: set[str]) -> Facts:
+def _after(line: Code, facts: Facts, whole: Whole) -> Facts:
     """Return what is known behind an operation."""
     op, operand = line.op, line.operand
     if op in KEEPING:
         return facts
     if op in ("st8", "st16"):
-        return _stored(line, facts, volatile)
+        return _stored(line, facts, whole.volatile)
     if op in ("stx8", "stx16", "sti8", "sti16"):
         return frozenset(fact for fact in facts if fact.op not in ("ld8", "ld16"))
     if op == "low":
         bytes_of = {Code("ld8", fact.operand) for fact in facts if fact.op == "ld16"}
         return frozenset([*bytes_of, NARROW])
-    found = {NARROW} if op in MAKE_NARROW or (op == "shr" and NARROW in facts) else set()
+    narrow = op in MAKE_NARROW or (op == "shr" and NARROW in facts)
+    found = {NARROW} if narrow or (op == "call" and operand in whole.narrow) else set()
     if op in ("ld0", "ld1", "ldk", "ldkn", "ldkw"):
         return _constant_facts(line)
     if op in ("ld8", "ld16"):
         assert isinstance(operand, Place)
-        if operand.symbol not in volatile:
+        if operand.symbol not in whole.volatile:
             found.add(line)
     return frozenset(found)
 
@@ -199,9 +198,7 @@ def _overlaps(fact: Code, place: Place, width: int) -> bool:
 A = Place("A")
 
 
-def _drop_unwanted(
-    lines: Lines, volatile: set[str], own: Collection[str], takes_a: Collection[str], result: bool
-) -> Lines:
+def _drop_unwanted(lines: Lines, whole: Whole, own: Collection[str], result: bool) -> Lines:
     """Drop what changes nothing but A or a local variable, and nobody wants that."""
     private = _private(lines, set(own))
     wanted_at: dict[str, frozenset[Place]] = {}
@@ -219,10 +216,10 @@ def _drop_unwanted(
                 now = frozenset()
             if line.op in JUMPS or line.op == "case":
                 now |= wanted_at.get(str(line.operand), frozenset())
-            if _useless(line, now, private, volatile):
+            if _useless(line, now, private, whole.volatile):
                 continue
             kept.append(line)
-            now = _before(line, now, private, takes_a, result)
+            now = _before(line, now, private, whole.takes_a, result)
         if not changed:
             return kept[::-1]
 

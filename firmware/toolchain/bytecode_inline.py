@@ -9,7 +9,7 @@ from bytecode_model import Code, Function, Label
 from bytecode_operations import size
 
 #: Bytes that a function may grow to: jumps reach 128 bytes, longer ones take five.
-GROWN_MAX = 220
+GROWN_MAX = 240
 
 
 def inline(functions: list[Function], entries: set[str]) -> list[Function]:

@@ -13,22 +13,25 @@ from dataclasses import replace
 
 from bytecode_model import Code, Function, Label
 from bytecode_operations import (
-    CODE_MAX,
     FIRST_CALL,
-    FIRST_PAIR,
     INVERSE,
     JUMPS,
     MEMORY,
+    NO_OPERAND,
     NUMBER,
     PAIRS_MAX,
+    RARE_NUMBER,
+    SMALL,
     WIDE,
     can_pair,
     size,
 )
+from bytecode_relay import relay
 from bytecode_tails import chain, jump
 from bytecode_types import BytecodeError
 
 NATIVES_MAX = 128
+CALL_PAGES_MAX = 0x60
 SHORT_REACH = range(-128, 128)
 ROUNDS = 8  # of choosing pairs
 SETTLING = 20  # rounds in which a jump may change its mind
@@ -44,6 +47,7 @@ class Layout:
         if len(natives) > NATIVES_MAX:
             raise BytecodeError(f"{len(natives)} native functions are called, {NATIVES_MAX} fit")
         self.natives = {name: number for number, name in enumerate(natives)}
+        self.call_pages = 0x20  # of 256 bytes; what numbers calls leave are pairs
         self.functions = chain(functions)
         self.pairs: dict[Code, int] = {}
         self.long: set[int] = set()  # jumps, by id: each is an object of its own
@@ -57,9 +61,21 @@ class Layout:
                 for line in function.code
             ]
         self._place()
-        self._settle()
-        if self.length > CODE_MAX:
-            raise BytecodeError(f"{self.length} bytes of byte code, {CODE_MAX} can be called")
+        while any(relay(function, self.long, self.size) for function in self.functions):
+            self.long = set()
+            self._place()
+        for pages in range(CALL_PAGES_MAX):
+            self.call_pages = pages
+            if pages << 8 >= self.length:
+                self._settle()
+                if pages << 8 >= self.length:
+                    return
+        raise BytecodeError(f"{self.length} bytes of byte code, {pages << 8} can be called")
+
+    @property
+    def first_pair(self) -> int:
+        """Return the first of the numbers behind those of calls."""
+        return FIRST_CALL + self.call_pages
 
     def _choose(self) -> None:
         """Choose the pairs by how often each comes, with the distances as they are."""
@@ -75,7 +91,8 @@ class Layout:
                 for line, distance in self._distances()
                 if line.op != "case" and id(line) not in self.long and distance in SHORT_REACH
             )
-        pairs = [code for code, count in counts.most_common(PAIRS_MAX) if count > 2]
+        room = min(0x100 - self.first_pair, PAIRS_MAX)
+        pairs = [code for code, count in counts.most_common(room) if count > 2]
         self.pairs = {code: number for number, code in enumerate(pairs)}
 
     def _settle(self) -> None:
@@ -158,6 +175,18 @@ class Layout:
             found[function.module] += sum(map(self.size, lines))
         return dict(found)
 
+    def operations(self) -> dict[str, int]:
+        """Return how often each operation of the chip comes, and how often as a pair."""
+        found: Counter[str] = Counter()
+        for function in self.functions:
+            for line in function.code:
+                if isinstance(line, Code):
+                    paired = self.paired.get(id(line), line) in self.pairs
+                    found.update([line.op, f"{line.op} pair"] if paired else [line.op])
+                    found["ljmp"] += id(line) in self.long
+                    found["rare"] += line.op in RARE_NUMBER
+        return dict(found)
+
     def size(self, line: Code | Label) -> int:
         """Return the bytes of an operation as it is laid out."""
         if isinstance(line, Code):
@@ -186,19 +215,29 @@ class Layout:
         return found
 
     def _encode(self, line: Code, at: int) -> list[Item]:
-        if line.op == "into":
-            return []
         line = self.paired.get(id(line), line)
         if line in self.pairs:
-            return [FIRST_PAIR + self.pairs[line]]
+            return [self.first_pair + self.pairs[line]]
         if _jumps(line):
             return self._jump(line, at)
+        if line.op == "into":
+            return []
+        return self._plain(line)
+
+    def _plain(self, line: Code) -> list[Item]:
+        if line.op in RARE_NUMBER:
+            return [NUMBER["rare"], RARE_NUMBER[line.op], *self._operand(line)]
         if size(line) == 2:
             return self._two(line)
-        return [NUMBER[line.op], *self._operand(line)] if size(line) > 1 else [NUMBER[line.op]]
+        return [NUMBER[line.op], *self._operand(line)]
 
     def _operand(self, line: Code) -> list[Item]:
-        """Return two bytes of operand: a number or an address."""
+        """Return the operand, two bytes of which are a number or an address."""
+        if line.op in NO_OPERAND:
+            return []
+        if line.op in SMALL:
+            assert isinstance(line.operand, int)
+            return [line.operand & 0xFF]
         if isinstance(line.operand, int):
             return [line.operand & 0xFF, line.operand >> 8]
         low_high: list[Item] = [("LOW", str(line.operand)), ("HIGH", str(line.operand))]

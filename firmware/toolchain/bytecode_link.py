@@ -11,6 +11,8 @@ from bytecode_model import Function, Label
 from bytecode_operations import JUMPS
 from bytecode_optimise import growth
 
+BYTE_SYMBOLS = ("byte_code", "byte_pairs", "byte_natives", "byte_first_pair")
+
 
 @dataclass
 class Module:
@@ -57,11 +59,13 @@ def write(modules: list[Module], layout: Layout, frames: Frames, entries: list[s
     outside = sorted((symbols | set(natives)) - defined)
     lines = ["\tlist\tp=18f4550", "\tradix\tdec", "\tinclude\t<p18f4550.inc>"]
     lines += [f"\textern\t{name}" for name in ["byte_enter", *outside]]
-    lines += [f"\tglobal\t{name}" for name in ("byte_code", "byte_pairs", "byte_natives")]
+    lines += [f"\tglobal\t{name}" for name in BYTE_SYMBOLS]
     lines += [f"\tglobal\t_{name}" for name in entries]
     for module in modules:
         lines += [f"\tglobal\t{label}" for label, _, exported in module.variables if exported]
     lines += _variables(modules, frames.total)
+    # A number that the linker puts into the interpreter, as the address of nothing.
+    lines += [f"byte_numbers\tudata\t{layout.first_pair}", "byte_first_pair\tres\t0"]
     lines.append("byte_stubs\tcode")
     for name in entries:
         place = f"byte_code+{layout.offsets[name]}"

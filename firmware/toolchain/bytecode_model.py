@@ -72,6 +72,15 @@ class Function:
 
 
 @dataclass
+class Whole:
+    """What the optimiser must know of the rest of the program, by name."""
+
+    volatile: set[str]  # variables
+    takes_a: set[str]  # functions with an argument in A
+    narrow: set[str]  # functions that return 8 bits
+
+
+@dataclass
 class Signature:
     """What callers know of a function."""
 

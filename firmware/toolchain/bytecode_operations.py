@@ -9,24 +9,25 @@ from bytecode_types import BytecodeError
 # In the order of the interpreter's table.
 PLAIN = [
     *("ret", "ret0", "ret1", "ld0", "ld1", "inc", "dec", "push", "push8"),
-    *("adds", "subs", "ands", "ors", "xors", "cmps", "neg", "com", "low"),
-    *("ldi8", "ldi16", "sti8", "sti16", "clrwdt", "shl", "shr", "sar"),
-    *("ldk", "ldkn", "addk", "addkn", "cmpk", "retk", "andk", "ork", "xork"),
-    *("ldkw", "addkw", "cmpkw", "andkw", "case"),
+    *("subs", "cmps", "neg", "low", "ldi8", "clrwdt", "drop1", "drop2", "drop4"),
+    *("shl", "shr", "ldk", "ldkn", "addk", "addkn", "cmpk", "retk", "andk", "ork"),
+    *("ldkw", "addkw", "cmpkw", "case"),
     *("jmp", "jz", "jnz", "jeq", "jne", "jlt", "jge", "jgt", "jle"),
     *("jltu", "jgeu", "jgtu", "jleu", "ljmp", "native8", "native16"),
-    *("ldt8", "ldt16", "drop1", "drop2", "drop3", "drop4"),
-    *("add8", "sub8", "and8", "or8", "xor8", "cmp8", "and16", "or16"),
-    *("ldx8", "ldx16", "stx8", "stx16"),
+    *("ldt8", "add8", "cmp8", "ldx8", "ldx16", "stx8", "rare"),
+]
+FIRST_MEMORY = len(PLAIN)
+MEMORY_ORDER = ["ld8", "ld16", "st8", "st16", "add16", "sub16", "cmp16"]
+# These have `rare` before their own number.
+RARE = [
+    *("adds", "ands", "ors", "xors", "com", "ldi16", "sti8", "sti16", "drop3"),
+    *("sar", "xork", "andkw", "ldt16", "stx16", "sub8", "and8", "or8", "xor8", "and16", "or16"),
 ]
 NUMBER = {name: number for number, name in enumerate(PLAIN)}
-MEMORY = {
-    name: 0x50 + 8 * number
-    for number, name in enumerate(["ld8", "ld16", "st8", "st16", "add16", "sub16", "cmp16"])
-}
-FIRST_CALL, FIRST_PAIR = 0x88, 0xA8
-CODE_MAX = (FIRST_PAIR - FIRST_CALL) << 8
-PAIRS_MAX = 0x100 - FIRST_PAIR
+RARE_NUMBER = {name: number for number, name in enumerate(RARE)}
+MEMORY = {name: FIRST_MEMORY + 8 * number for number, name in enumerate(MEMORY_ORDER)}
+FIRST_CALL = FIRST_MEMORY + 8 * len(MEMORY)
+PAIRS_MAX = 128
 
 INVERSE = {
     "jz": "jnz",
@@ -39,7 +40,7 @@ INVERSE = {
 INVERSE |= {other: one for one, other in INVERSE.items()}
 JUMPS = {"jmp", *INVERSE}
 ENDS = {"ret", "ret0", "ret1", "retk", "jmp", "ljmp"}
-NO_OPERAND = set(PLAIN[: PLAIN.index("shl")]) | {"drop1", "drop2", "drop3", "drop4"}
+NO_OPERAND = {*PLAIN[: PLAIN.index("shl")], *RARE[: RARE.index("sar")]}
 SMALL = {"shl", "shr", "sar", "ldk", "ldkn", "addk", "addkn", "cmpk", "retk", "andk", "ork", "xork"}
 WIDE = {"ldkw", "addkw", "cmpkw", "andkw"}
 THREE_BYTES = {
@@ -92,13 +93,16 @@ def size(code: Code | Label) -> int:
     """Return the bytes of an operation; jumps in their short form."""
     if isinstance(code, Label) or code.op == "into":
         return 0
+    found = 2
     if code.op in NO_OPERAND:
-        return 1
-    if code.op in THREE_BYTES or code.op in WIDE or code.op in ("case", "ljmp"):
-        return 3
-    return 2
+        found = 1
+    elif code.op in THREE_BYTES or code.op in WIDE or code.op in ("case", "ljmp"):
+        found = 3
+    return found + (code.op in RARE_NUMBER)
 
 
 def can_pair(code: Code) -> bool:
     """Tell whether an operation may come from the table of pairs."""
+    if code.op in RARE_NUMBER:
+        return False
     return code.op in SMALL or code.op in MEMORY or code.op in ("call", "native8", "native16")

@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Sequence
 
 from bytecode_flow import drop_needless
-from bytecode_model import Code, Function, Label
-from bytecode_operations import ENDS, INVERSE, JUMPS, select, size
+from bytecode_model import Code, Function, Label, Whole
+from bytecode_operations import ENDS, INVERSE, JUMPS, can_pair, select, size
 
 Line = Code | Label
 Lines = list[Line]
 RETURNS = {"ret", "ret0", "ret1", "retk"}
 PIECE_MAX = 14  # operations
+LIKELY_PAIRS = 60
 
 
 def choose(function: Function) -> None:
@@ -24,13 +25,13 @@ def choose(function: Function) -> None:
     function.code = lines
 
 
-def optimise(function: Function, volatile: set[str], takes_a: set[str]) -> None:
-    """Shorten one function; `takes_a`: functions with an argument in A."""
+def optimise(function: Function, whole: Whole) -> None:
+    """Shorten one function."""
     lines = function.code
     own = function.own_symbols()
     while True:
         before = list(lines)
-        lines = drop_needless(lines, volatile, own, takes_a, function.result.size > 0)
+        lines = drop_needless(lines, whole, own, function.result.size > 0)
         lines = _thread_jumps(lines)
         lines = _drop_unreachable(lines)
         lines = _drop_unused_labels(lines)
@@ -165,15 +166,30 @@ class Pieces:
         """Take all functions; those found are appended to the list."""
         self.functions = functions
         self.count = 0
+        self.pairs: set[Code] = set()
 
     def fold(self) -> None:
         """Fold the pieces that save most, again and again."""
         while True:
+            self._guess_pairs()
             found = self._best()
             for piece in found:
                 self._take(piece)
             if not found:
                 return
+
+    def _guess_pairs(self) -> None:
+        """Note which operations may take one byte."""
+        counts = Counter(
+            line
+            for function in self.functions
+            for line in function.code
+            if isinstance(line, Code) and can_pair(line)
+        )
+        self.pairs = {code for code, _ in counts.most_common(LIKELY_PAIRS)}
+
+    def _size(self, code: Code) -> int:
+        return 1 if code in self.pairs else size(code)
 
     def _best(self) -> list[tuple[Code, ...]]:
         """Return some pieces worth folding that share no operation, the best first."""
@@ -189,7 +205,7 @@ class Pieces:
         worth = []
         for piece, found in places.items():
             if len(found) > 1:
-                length = sum(size(codes[n]) for n in piece)
+                length = sum(self._size(codes[n]) for n in piece)
                 saved = _apart(found, len(piece)) * (length - 2) - length - 1
                 if saved > 0:
                     worth.append((saved, piece))

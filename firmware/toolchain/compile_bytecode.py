@@ -25,9 +25,10 @@ from bytecode_frames import Frames
 from bytecode_inline import inline
 from bytecode_layout import Layout
 from bytecode_link import Module, stack_use, write
-from bytecode_model import Function, Place, Signature, Unit
+from bytecode_model import Function, Place, Signature, Unit, Whole
 from bytecode_optimise import Pieces, choose, optimise
-from bytecode_types import BytecodeError, Types
+from bytecode_truth import share_truths
+from bytecode_types import U8, BytecodeError, Types
 from pycparser import c_ast, c_parser
 
 INTERRUPT = "_low_interrupt"
@@ -166,11 +167,14 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, A
         outside |= {"_mulint", "_divuint", "_moduint"}
         for node in source.definitions:
             functions.append(Compiler(source.unit, outside, node).function)
-    volatile = {label for source in sources for label in source.volatile}
-    takes_a = {function.name for function in functions if function.parameters}
+    whole = Whole(
+        {label for source in sources for label in source.volatile},
+        {function.name for function in functions if function.parameters},
+        {function.name for function in functions if function.result == U8},
+    )
     for function in functions:
         choose(function)
-        optimise(function, volatile, takes_a)
+        optimise(function, whole)
     called = {name for reached in native.calls.values() for name in reached}
     entries = sorted(name for name in own if f"_{name}" in called)
     interrupted = {name[1:] for name in native.reach(INTERRUPT)} & own
@@ -188,14 +192,20 @@ def compile_all(sources: list[Source], native: Native) -> tuple[str, dict[str, A
     frames = Frames(functions, reach)
     functions = inline(functions, set(entries) | set().union(*reach.values()))
     for function in functions:
-        optimise(function, volatile, takes_a)
+        optimise(function, whole)
     frames.settle(functions)
+    share_truths(functions)
     Pieces(functions).fold()
     natives = sorted({str(line.operand) for f in functions for line in f.natives()})
     layout = Layout(functions, natives)
     modules = [source.module for source in sources]
     text = write(modules, layout, frames, entries)
-    report = {"entries": entries, "flash": layout.sizes(), "functions": stack_use(functions)}
+    report = {
+        "entries": entries,
+        "flash": layout.sizes(),
+        "functions": stack_use(functions),
+        "operations": layout.operations(),
+    }
     print(
         f"{layout.length} bytes of byte code, {2 * len(layout.pairs)} of pairs, "
         f"{2 * len(natives)} of natives, {frames.total} of local variables"

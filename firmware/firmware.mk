@@ -17,8 +17,9 @@ SDCC_FLAGS := -mpic16 -p$(CHIP) --no-warn-non-free --nostdlib --nostdinc \
 # What is in no hurry is compiled to byte code: half the size, ten times slower.
 BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/buttons.c lathe/homing.c \
   lathe/passes.c lathe/places.c lathe/progress.c lathe/cuts.c lathe/manual.c \
-  lathe/part_check.c lathe/shape_check.c lathe/stroke.c link/commands.c store/parts.c \
-  store/settings.c)
+  lathe/part_check.c lathe/part_values.c lathe/shape_check.c lathe/stroke.c \
+  reset.c link/commands.c link/lengths.c motion/set_up.c panel/led.c \
+  store/eeprom_write.c store/parts.c store/settings.c)
 BYTE_I := $(BYTE_C:firmware/%.c=$(OBJECTS)/%.i)
 FIRMWARE_C := $(filter-out $(BYTE_C),$(wildcard firmware/*.c firmware/*/*.c))
 FIRMWARE_ASM := $(wildcard firmware/*.asm firmware/*/*.asm)

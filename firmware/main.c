@@ -4,9 +4,9 @@
 #include "board.h"         /* pin directions */
 #include "lathe/guard.h"   /* guard_tick */
 #include "lathe/machine.h" /* the machine */
-#include "link/commands.h" /* reset cause, leaving */
+#include "link/commands.h" /* leaving */
 #include "link/frame.h"    /* frame_poll */
-#include "link/protocol.h" /* reset causes */
+#include "link/protocol.h" /* states */
 #include "motion/path.h"   /* moves */
 #include "motion/ramp.h"   /* speed */
 #include "motion/stream.h" /* step timer */
@@ -43,22 +43,11 @@
 #define INTCON2_RBPU 0x80
 #define PORTE_RDPU 0x80
 #define RCON_IPEN 0x80
+#define RCON_CAUSES 0x1F /* set, as a reset clears them */
 #define INTCON_BOTH_LEVELS 0xC0
 #define PIR1_TMR2IF 0x02
 #define PIR2_TMR3IF 0x02 /* asked for by the step interrupt */
 #define PIR2_USBIF 0x20
-
-/* RCON: a bit that is 0 tells what happened. */
-#define RCON_BOR 0x01
-#define RCON_POR 0x02
-#define RCON_TO 0x08
-#define RCON_RI 0x10
-#define RCON_CAUSES 0x1F
-#define STKPTR_FAULTS 0xC0
-
-/* Copied by startup.asm before anything changes them. */
-volatile uint8_t reset_rcon;
-volatile uint8_t reset_stkptr;
 
 void low_interrupt(void) __interrupt(2)
 {
@@ -77,26 +66,6 @@ void low_interrupt(void) __interrupt(2)
         inputs_tick();
         guard_tick();
     }
-}
-
-static uint8_t reset_cause(void)
-{
-    if (!(reset_rcon & RCON_POR)) {
-        return RESET_CAUSE_POWER_ON;
-    }
-    if (!(reset_rcon & RCON_BOR)) {
-        return RESET_CAUSE_BROWN_OUT;
-    }
-    if (!(reset_rcon & RCON_TO)) {
-        return RESET_CAUSE_WATCHDOG;
-    }
-    if (!(reset_rcon & RCON_RI)) {
-        return RESET_CAUSE_SOFTWARE;
-    }
-    if (reset_stkptr & STKPTR_FAULTS) {
-        return RESET_CAUSE_STACK;
-    }
-    return RESET_CAUSE_MCLR;
 }
 
 static void set_up_pins(void)
@@ -149,7 +118,6 @@ static void serve(void)
 void main(void)
 {
     set_up_pins();
-    commands_reset_cause = reset_cause();
     RCON |= RCON_IPEN | RCON_CAUSES;
     inputs_init();
     stream_init();

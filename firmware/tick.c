@@ -7,7 +7,8 @@
 #define TIMER2_ON 0x16 /* T2CON: prescale 16, postscale 3, on */
 #define TMR2IF_MASK 0x02
 
-static volatile uint32_t milliseconds;
+static volatile uint16_t milliseconds;
+volatile uint16_t tick_high; /* of the 32 bits */
 
 void tick_init(void)
 {
@@ -20,12 +21,15 @@ void tick_init(void)
 void tick_count(void)
 {
     milliseconds++;
+    if (milliseconds == 0) {
+        tick_high++;
+    }
 }
 
-uint32_t tick_uptime_ms(void)
+uint16_t tick_now(void)
 {
-    uint32_t first;
-    uint32_t second = milliseconds;
+    uint16_t first;
+    uint16_t second = milliseconds;
 
     /* Equal readings were not split by the interrupt. */
     do {
@@ -33,14 +37,4 @@ uint32_t tick_uptime_ms(void)
         second = milliseconds;
     } while (first != second);
     return first;
-}
-
-uint16_t tick_now(void)
-{
-    return (uint16_t)tick_uptime_ms();
-}
-
-uint16_t tick_high(void)
-{
-    return (uint16_t)(tick_uptime_ms() >> 16);
 }

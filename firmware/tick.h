@@ -22,9 +22,6 @@ void tick_count(void);
 uint16_t tick_now(void);
 
 /* The high 16 bits. */
-uint16_t tick_high(void);
-
-/* Milliseconds since reset; wraps after 49 days. */
-uint32_t tick_uptime_ms(void);
+extern volatile uint16_t tick_high;
 
 #endif

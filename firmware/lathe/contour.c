@@ -241,21 +241,3 @@ int16_t contour_material(int16_t v, int16_t z)
     } while (changed);
     return z;
 }
-
-int16_t contour_highest(int16_t z_high, int16_t z_low)
-{
-    int16_t low = -(int16_t)part_below;
-    int16_t high = part_stock_radius;
-
-    while (low < high) { /* 15 times at most */
-        int16_t middle = low + ((uint16_t)(high - low) >> 1);
-
-        path_bridge();
-        if (contour_material(middle, z_high) <= z_low) {
-            high = middle;
-        } else {
-            low = middle + 1;
-        }
-    }
-    return high;
-}

@@ -80,7 +80,4 @@ uint8_t contour_stretch(int16_t v, int16_t z);
    operations before the present one have left; below every z: nowhere. */
 int16_t contour_material(int16_t v, int16_t z);
 
-/* Largest radius left between two places, z_high > z_low. */
-int16_t contour_highest(int16_t z_high, int16_t z_low);
-
 #endif

@@ -55,6 +55,25 @@ static int16_t level_at(uint16_t number)
     return from - step_depth * number - (number < deeper ? number : deeper);
 }
 
+/* Largest radius left between two places, z_high > z_low. */
+static int16_t highest(int16_t z_high, int16_t z_low)
+{
+    int16_t low = -(int16_t)part_below;
+    int16_t high = part_stock_radius;
+
+    while (low < high) { /* 15 times at most */
+        int16_t middle = low + ((uint16_t)(high - low) >> 1);
+
+        path_bridge();
+        if (contour_material(middle, z_high) <= z_low) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    return high;
+}
+
 static uint8_t begin_plunge(void)
 {
     uint16_t over = part_width - (part_width >> 2);
@@ -62,7 +81,7 @@ static uint8_t begin_plunge(void)
     cuts_start = flash_read_u16();
     end_z = flash_read_u16();
     cuts_end = flash_read_u16();
-    top = contour_highest(cuts_start + part_width, end_z);
+    top = highest(cuts_start + part_width, end_z);
     levels = (uint16_t)(cuts_start - end_z + over - 1) / over + 1;
     roughing = CUT_PLUNGE;
     cuts_open = 0;
@@ -106,14 +125,14 @@ static uint8_t begin_contour(void)
     last_e = end_z;
     if (facing) {
         roughing = CUT_FACING;
-        top = contour_highest(part_stock_front, end_z);
+        top = highest(part_stock_front, end_z);
         from = contour_material(start_x, part_stock_front);
         spread(end_z);
         if (levels == 0) {
             return 0;
         }
     } else {
-        top = contour_highest(cuts_start, end_z);
+        top = highest(cuts_start, end_z);
         if (top <= lowest) {
             return 0;
         }

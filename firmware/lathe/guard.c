@@ -9,21 +9,13 @@ volatile uint8_t guard_tripped;
 volatile uint8_t guard_stopped;
 volatile uint8_t guard_armed;
 
-static volatile uint8_t stop_input;
-static volatile uint8_t stop_inverted;
+volatile uint8_t guard_stop_input;
+volatile uint8_t guard_stop_inverted;
 
 void guard_clear(void)
 {
     guard_tripped = 0;
     stream_flags &= (uint8_t)~STREAM_DRY;
-}
-
-void guard_stop_at(uint8_t input, uint8_t level)
-{
-    stop_input = 0;
-    stop_inverted = level ? 0 : input;
-    guard_stopped = 0;
-    stop_input = input;
 }
 
 void guard_tick(void)
@@ -41,7 +33,7 @@ void guard_tick(void)
         }
         guard_tripped |= tripped;
     }
-    if ((inputs_state ^ stop_inverted) & stop_input) {
+    if ((inputs_state ^ guard_stop_inverted) & guard_stop_input) {
         stream_abort();
         guard_stopped = 1;
     }

@@ -15,8 +15,9 @@
    1/SLOPE_UNIT. */
 uint8_t shape_steeper(uint16_t dx, uint16_t slope, uint16_t dz);
 
-/* True when the motion takes the arc that contour_next() has read, and neither
-   end lies beyond its extremum of z. */
-uint8_t shape_arc_valid(void);
+/* Distance of the start and the end of the arc that contour_next() has read
+   from its centre. */
+uint16_t shape_radius(void);
+uint16_t shape_end_radius(void);
 
 #endif

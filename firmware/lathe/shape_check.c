@@ -6,6 +6,7 @@
 #include "lathe/part.h"             /* records */
 #include "lathe/shape_arithmetic.h" /* slopes, arcs */
 #include "link/protocol.h"          /* offsets, refusals */
+#include "motion/arc.h"             /* arcs that the motion takes */
 #include "motion/path.h"            /* kinds of segment */
 #include "store/flash.h"            /* reading numbers */
 #include "store/parts.h"            /* where the image is */
@@ -115,11 +116,39 @@ static uint8_t check_tangent(int16_t x, int16_t z)
     return check_slope(z, x);
 }
 
+/* True when the motion takes the arc just read, and neither end lies beyond its
+   extremum of z. The first lines see to it that the motion's own check cannot
+   overflow. */
+static uint8_t arc_valid(void)
+{
+    uint16_t radius = shape_radius();
+    uint16_t off = shape_end_radius() - radius + 2;
+    int16_t from_x = contour_from_x;
+    int16_t to_x = contour_to_x;
+
+    if (contour_arc != SEGMENT_ARC_CW) {
+        from_x = -from_x;
+        to_x = -to_x;
+    }
+    if (from_x < 0 || to_x < 0 || contour_to_z > contour_from_z) {
+        return 0;
+    }
+    if (radius > RADIUS_MAX || off > 4) {
+        return 0;
+    }
+    path_next.kind = contour_arc;
+    path_next.dx = contour_dx;
+    path_next.dz = contour_dz;
+    contour_read_centre();
+    path_try();
+    return arc_begin();
+}
+
 static uint8_t check_arc(void)
 {
     uint8_t reason;
 
-    if (!shape_arc_valid()) {
+    if (!arc_valid()) {
         return REFUSAL_ARC;
     }
     if (contour_split) {

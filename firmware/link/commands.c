@@ -20,9 +20,9 @@
 #include "store/flash.h"      /* reading */
 #include "store/parts.h"      /* parts */
 #include "store/settings.h"   /* settings */
+#include "reset.h"            /* cause */
 #include "tick.h"             /* uptime */
 
-uint8_t commands_reset_cause;
 uint8_t commands_leaving;
 
 /* Of the main loop, 4 ms each: 50 ms for the answer to reach the host. */
@@ -65,10 +65,10 @@ static void put_uptime(void)
     uint16_t high;
 
     do {
-        high = tick_high();
+        high = tick_high;
         put_u16(STATUS_RESPONSE_UPTIME_MS_AT, tick_now());
         put_u16(STATUS_RESPONSE_UPTIME_MS_AT + 2, high);
-    } while (high != tick_high());
+    } while (high != tick_high);
 }
 
 static uint8_t hello(void)
@@ -147,7 +147,7 @@ static uint8_t status(void)
         running ? passes_pass() : 0;
     frame_response[STATUS_RESPONSE_PASSES_AT] = running ? passes_passes() : 0;
     put_u16(STATUS_RESPONSE_PERMILLE_AT, machine_permille());
-    frame_response[STATUS_RESPONSE_RESET_CAUSE_AT] = commands_reset_cause;
+    frame_response[STATUS_RESPONSE_RESET_CAUSE_AT] = reset_cause();
     put_u16(STATUS_RESPONSE_BAD_FRAMES_AT, frame_bad_frames);
     put_uptime();
     frame_response[STATUS_RESPONSE_STREAM_LOW_AT] = stream_low;

@@ -11,9 +11,6 @@
 
 #include <stdint.h>
 
-/* Why the chip last started, RESET_CAUSE_...; set once by main(). */
-extern uint8_t commands_reset_cause;
-
 /* Turns of 4 ms, or less, until main() goes to the boot loader; 0 = never. */
 extern uint8_t commands_leaving;
 

@@ -21,37 +21,25 @@
 uint16_t entries_made;
 
 /* Screw less tool at the end of what has been generated. */
-static int16_t planned_slack_x;
-static int16_t planned_slack_z;
+int16_t entries_planned_slack_x;
+int16_t entries_planned_slack_z;
 
 /* The run. */
-static uint8_t run_kind;
-static uint16_t run_left;
+uint8_t entries_run_kind;
+uint16_t entries_run_left;
 
 /* Dead steps to be taken up before the next step of an axis. */
-static uint16_t due_x;
-static uint16_t due_z;
+uint16_t entries_due_x;
+uint16_t entries_due_z;
 static uint8_t due_flags_x;
 static uint8_t due_flags_z;
 
 /* An entry that waits until they have been. */
-static uint8_t waiting;
+uint8_t entries_waiting;
 static uint8_t waiting_flags;
 static uint8_t waiting_stretch;
 
 extern volatile uint8_t step_ring[256];
-
-void entries_begin(void)
-{
-    entries_made = 0;
-    run_left = 0;
-    run_kind = RUN_NONE;
-    due_x = 0;
-    due_z = 0;
-    waiting = 0;
-    planned_slack_x = slack_x;
-    planned_slack_z = slack_z;
-}
 
 static uint16_t size(int16_t value)
 {
@@ -72,7 +60,8 @@ static uint16_t dead_steps(int16_t slack, uint16_t dead, uint8_t negative)
 
 static void turn_x(uint8_t negative)
 {
-    due_x = dead_steps(planned_slack_x, motion_dead_x, negative);
+    entries_due_x =
+        dead_steps(entries_planned_slack_x, motion_dead_x, negative);
     due_flags_x = STREAM_STEP_X | STREAM_SLACK_X;
     if (negative) {
         due_flags_x |= STREAM_X_NEGATIVE;
@@ -81,7 +70,8 @@ static void turn_x(uint8_t negative)
 
 static void turn_z(uint8_t negative)
 {
-    due_z = dead_steps(planned_slack_z, motion_dead_z, negative);
+    entries_due_z =
+        dead_steps(entries_planned_slack_z, motion_dead_z, negative);
     due_flags_z = STREAM_STEP_Z | STREAM_SLACK_Z;
     if (negative) {
         due_flags_z |= STREAM_Z_NEGATIVE;
@@ -123,14 +113,14 @@ static void begin_line(void)
         run_major = z;
         run_minor = x;
     }
-    run_left = run_major;
-    if (run_left == 0) {
+    entries_run_left = run_major;
+    if (entries_run_left == 0) {
         return;
     }
     run_error = run_major >> 1;
     slope = (uint16_t)((((uint32_t)run_minor << 8) + run_error) / run_major);
     run_stretch = slope > 255 ? DIAGONAL : interpolate_stretch((uint8_t)slope);
-    run_kind = RUN_LINE;
+    entries_run_kind = RUN_LINE;
     turn(run_minor != 0 ? run_diagonal : run_straight);
 }
 
@@ -138,16 +128,16 @@ static void next_octant(void)
 {
     uint8_t rest;
 
-    run_left = arc_next();
-    if (run_left == 0) {
+    entries_run_left = arc_next();
+    if (entries_run_left == 0) {
         rest = arc_rest_flags();
         if (rest != 0) {
             turn(rest);
-            waiting = 1;
+            entries_waiting = 1;
             waiting_flags = rest | STREAM_ADVANCES;
             waiting_stretch = step_ring[(uint8_t)(stream_head - 1)];
         }
-        run_kind = RUN_NONE;
+        entries_run_kind = RUN_NONE;
         return;
     }
     run_straight = STREAM_ADVANCES | arc_major_flags;
@@ -171,7 +161,7 @@ void entries_segment(void)
             path_refused = 1;
             return;
         }
-        run_kind = RUN_ARC;
+        entries_run_kind = RUN_ARC;
         next_octant();
     } else {
         stream_push(STREAM_WAIT - SEGMENT_WAIT + kind,
@@ -183,12 +173,12 @@ static void interpolate(uint8_t batch)
 {
     run_batch = batch;
     run_head = stream_head;
-    if (run_kind == RUN_LINE) {
+    if (entries_run_kind == RUN_LINE) {
         interpolate_line();
     } else {
         interpolate_arc();
     }
-    run_left -= batch;
+    entries_run_left -= batch;
 }
 
 static void publish(uint8_t batch)
@@ -200,15 +190,15 @@ static void publish(uint8_t batch)
 /* Adds due dead steps of the axes that an entry leaves at rest. */
 static uint8_t with_dead_steps(uint8_t flags)
 {
-    if (due_x != 0 && !(flags & STREAM_STEP_X)) {
+    if (entries_due_x != 0 && !(flags & STREAM_STEP_X)) {
         flags |= due_flags_x;
-        due_x--;
-        planned_slack_x += flags & STREAM_X_NEGATIVE ? -1 : 1;
+        entries_due_x--;
+        entries_planned_slack_x += flags & STREAM_X_NEGATIVE ? -1 : 1;
     }
-    if (due_z != 0 && !(flags & STREAM_STEP_Z)) {
+    if (entries_due_z != 0 && !(flags & STREAM_STEP_Z)) {
         flags |= due_flags_z;
-        due_z--;
-        planned_slack_z += flags & STREAM_Z_NEGATIVE ? -1 : 1;
+        entries_due_z--;
+        entries_planned_slack_z += flags & STREAM_Z_NEGATIVE ? -1 : 1;
     }
     return flags;
 }
@@ -219,12 +209,12 @@ static void careful_entry(void)
     uint8_t at = stream_head;
     uint8_t flags;
 
-    if (waiting) {
-        if (due_x != 0 || due_z != 0) {
+    if (entries_waiting) {
+        if (entries_due_x != 0 || entries_due_z != 0) {
             stream_push(with_dead_steps(0), 0);
             return;
         }
-        waiting = 0;
+        entries_waiting = 0;
         stream_push(waiting_flags, waiting_stretch);
         if (waiting_flags & STREAM_ADVANCES) {
             entries_made++;
@@ -233,9 +223,9 @@ static void careful_entry(void)
     }
     interpolate(1);
     flags = step_ring[at];
-    if ((due_x != 0 && (flags & STREAM_STEP_X)) ||
-        (due_z != 0 && (flags & STREAM_STEP_Z))) {
-        waiting = 1;
+    if ((entries_due_x != 0 && (flags & STREAM_STEP_X)) ||
+        (entries_due_z != 0 && (flags & STREAM_STEP_Z))) {
+        entries_waiting = 1;
         waiting_flags = flags;
         waiting_stretch = step_ring[at + 1];
         return;
@@ -250,7 +240,7 @@ static void careful_entry(void)
  */
 static void flat_top(void)
 {
-    uint8_t batch = (uint8_t)run_left;
+    uint8_t batch = (uint8_t)entries_run_left;
     uint8_t step = arc_minor_flags & (STREAM_STEP_X | STREAM_STEP_Z);
     uint8_t at;
 
@@ -276,20 +266,20 @@ static uint8_t generate(uint8_t room)
 {
     uint8_t batch = room;
 
-    if (run_left < batch) {
-        batch = (uint8_t)run_left;
+    if (entries_run_left < batch) {
+        batch = (uint8_t)entries_run_left;
     }
-    if (run_kind == RUN_ARC && arc_turns) {
-        if (run_left <= FLAT) {
-            if (room < run_left) {
+    if (entries_run_kind == RUN_ARC && arc_turns) {
+        if (entries_run_left <= FLAT) {
+            if (room < entries_run_left) {
                 return 0;
             }
             flat_top();
             publish(batch);
             return batch;
         }
-        if (run_left - batch < FLAT) {
-            batch = (uint8_t)(run_left - FLAT);
+        if (entries_run_left - batch < FLAT) {
+            batch = (uint8_t)(entries_run_left - FLAT);
         }
     }
     interpolate(batch);
@@ -299,14 +289,15 @@ static uint8_t generate(uint8_t room)
 
 uint8_t entries_make(uint8_t room)
 {
-    if (waiting || ((due_x != 0 || due_z != 0) && run_left != 0)) {
+    if (entries_waiting ||
+        ((entries_due_x != 0 || entries_due_z != 0) && entries_run_left != 0)) {
         careful_entry();
-    } else if (run_left != 0) {
+    } else if (entries_run_left != 0) {
         return generate(room);
-    } else if (run_kind == RUN_ARC) {
+    } else if (entries_run_kind == RUN_ARC) {
         next_octant();
     } else {
-        run_kind = RUN_NONE;
+        entries_run_kind = RUN_NONE;
         return ENTRIES_COMPLETE;
     }
     return 1;

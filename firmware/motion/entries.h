@@ -17,11 +17,19 @@
 
 #include <stdint.h>
 
-/* Entries made since entries_begin() that advance the path. */
+/* Entries made since path_begin() that advance the path. */
 extern uint16_t entries_made;
 
-/* At the start of a chain: the screws stand as the step stream tells. */
-void entries_begin(void);
+/* For path_begin() (set_up.c), which sets all to 0 and the slack to what the
+   screws have now: the run, dead steps due, an entry that waits for them;
+   screw less tool at the end of what has been generated. */
+extern uint8_t entries_run_kind;
+extern uint16_t entries_run_left;
+extern uint16_t entries_due_x;
+extern uint16_t entries_due_z;
+extern uint8_t entries_waiting;
+extern int16_t entries_planned_slack_x;
+extern int16_t entries_planned_slack_z;
 
 /* Takes path_present. */
 void entries_segment(void);

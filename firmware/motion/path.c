@@ -2,12 +2,10 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "motion/path.h"
-#include "link/protocol.h"  /* axes, settings */
 #include "motion/entries.h" /* generation */
 #include "motion/plan.h"    /* speeds, corners */
 #include "motion/ramp.h"    /* speed */
 #include "motion/stream.h"  /* entries */
-#include "store/settings.h" /* acceleration */
 
 /* Entries generated in one turn of the main loop: bounds the time away from
    the link, and still keeps ahead of 60,000 entries/s. */
@@ -33,73 +31,21 @@ uint32_t path_rate;
 uint16_t motion_dead_x;
 uint16_t motion_dead_z;
 
-static uint8_t complete; /* path_source() has no more */
-static uint8_t ended;    /* the end has been pushed */
-/* The interrupt has been set going; WAITS: it finds a wait behind the last
-   step. */
-static uint8_t started;
+uint8_t path_complete;
+uint8_t path_ended;
+uint8_t path_started;
 #define WAITS 2
-static uint8_t begun; /* path_made has been begun */
-
-static uint16_t smaller_setting(uint8_t one, uint8_t other)
-{
-    return settings[one] < settings[other] ? settings[one] : settings[other];
-}
-
-void path_configure(void)
-{
-    ramp_configure(settings[SETTING_ACCELERATION],
-                   smaller_setting(SETTING_START_RATE_X, SETTING_START_RATE_Z),
-                   smaller_setting(SETTING_RAPID_RATE_X, SETTING_RAPID_RATE_Z));
-    plan_configure(); /* counts in braking distances */
-}
-
-void path_set_feed(uint16_t feed)
-{
-    path_rate = (uint32_t)feed << 5; /* 256 / FEED_UNIT */
-}
-
-void path_set_rapid(uint16_t rate)
-{
-    path_rate = (uint32_t)rate << 8;
-}
-
-void path_begin(void)
-{
-    path_head = 0;
-    path_made = 0;
-    ramp_segment = 0;
-    complete = 0;
-    path_refused = 0;
-    ended = 0;
-    started = 0;
-    begun = 0;
-    entries_begin();
-    plan_begin();
-    ramp_end();
-    stream_prepare();
-}
+uint8_t path_begun;
 
 uint8_t path_busy(void)
 {
-    return !ended || (stream_flags & STREAM_ACTIVE);
+    return !path_ended || (stream_flags & STREAM_ACTIVE);
 }
 
 void path_cancel(void)
 {
     stream_abort();
-    ended = 1;
-}
-
-void path_set_home(uint8_t axis)
-{
-    if (axis == AXIS_X) {
-        position_x = 0;
-        slack_x = -(int16_t)motion_dead_x;
-    } else {
-        position_z = 0;
-        slack_z = -(int16_t)motion_dead_z;
-    }
+    path_ended = 1;
 }
 
 static uint8_t after(uint8_t index)
@@ -133,19 +79,26 @@ static void copy_segment(void)
     }
 }
 
+void path_try(void)
+{
+    copy_from = (__data const uint8_t *)&path_next;
+    copy_to = (__data uint8_t *)&path_present;
+    copy_segment();
+}
+
 /* Takes one more segment into the queue, if there is room. */
 static uint8_t accept(void)
 {
     uint8_t next = after(path_head);
 
-    if (complete || next == ramp_segment) {
+    if (path_complete || next == ramp_segment) {
         return 0;
     }
     if (!path_source()) {
-        complete = 1;
+        path_complete = 1;
         if (path_head == path_made) { /* nothing at all */
             path_mark = path_next.mark;
-            ended = 1;
+            path_ended = 1;
         }
         return 0;
     }
@@ -169,12 +122,12 @@ static uint8_t next_segment(void)
 {
     __data struct segment *segment = &segments[path_made];
 
-    if (begun) {
+    if (path_begun) {
         segment->end = entries_made;
         if (after(path_made) == path_head) {
-            if (complete) {
+            if (path_complete) {
                 stream_push(STREAM_END, 0);
-                ended = 1;
+                path_ended = 1;
             }
             return 0;
         }
@@ -186,9 +139,9 @@ static uint8_t next_segment(void)
     } else {
         segment->end = entries_made + segment->count;
     }
-    begun = 1;
-    if (started) {
-        started = 1;
+    path_begun = 1;
+    if (path_started) {
+        path_started = 1;
     }
     copy_from = (__data const uint8_t *)segment;
     copy_to = (__data uint8_t *)&path_present;
@@ -205,13 +158,13 @@ static uint8_t make(void)
     uint8_t room;
     uint8_t done;
 
-    if (ended) {
+    if (path_ended) {
         return 0;
     }
-    if (!started && !complete && after(path_head) != ramp_segment) {
+    if (!path_started && !path_complete && after(path_head) != ramp_segment) {
         return 0; /* look ahead as far as possible before the first step */
     }
-    while (budget != 0 && !ended && !path_refused) {
+    while (budget != 0 && !path_ended && !path_refused) {
         room = stream_room();
         if (room < 4) {
             break;
@@ -227,14 +180,15 @@ static uint8_t make(void)
         }
         budget -= done;
     }
-    if (path_refused || (!started && ramp_holding())) {
+    if (path_refused || (!path_started && ramp_holding())) {
         return 0;
     }
-    if (!started && (ended || bare || stream_fill() >= STREAM_ENTRIES / 2)) {
-        started = 1;
+    if (!path_started &&
+        (path_ended || bare || stream_fill() >= STREAM_ENTRIES / 2)) {
+        path_started = 1;
         ramp_begin(0);
         stream_start();
-    } else if (started && !ended && stream_fill() < stream_low) {
+    } else if (path_started && !path_ended && stream_fill() < stream_low) {
         stream_low = stream_fill();
     }
     return bare;
@@ -244,24 +198,24 @@ static uint8_t make(void)
    the tool may stand there. */
 void path_bridge(void)
 {
-    if (make() && started && !ended &&
-        stream_fill() < (started == WAITS ? 1 : BRIDGE_FILL)) {
+    if (make() && path_started && !path_ended &&
+        stream_fill() < (path_started == WAITS ? 1 : BRIDGE_FILL)) {
         stream_push(STREAM_WAIT, BRIDGE_MS);
         plan_begin();
-        started = WAITS;
+        path_started = WAITS;
     }
 }
 
 void path_keep_up(void)
 {
-    if (!ended) {
+    if (!path_ended) {
         make();
     }
 }
 
 void path_poll(void)
 {
-    if (!ended) {
+    if (!path_ended) {
         accept();
         make();
     }

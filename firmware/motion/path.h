@@ -65,8 +65,10 @@ extern uint32_t path_rate;
 void path_set_feed(uint16_t feed);
 void path_set_rapid(uint16_t rate);
 
-/* The segment being turned into entries. */
+/* The segment being turned into entries; path_try() puts path_next there
+   while nothing moves, to ask arc.h about it. */
 extern struct segment path_present;
+void path_try(void);
 
 /* Mark of the segment being executed. */
 extern volatile uint8_t path_mark;
@@ -84,6 +86,14 @@ uint8_t path_source(void);
 /* The source has described an arc that does not exist: nothing of it has
    been made, and nothing more will be. */
 extern uint8_t path_refused;
+
+/* The chain: path_source() has no more; the end has been pushed; the interrupt
+   has been set going (2: it finds a wait behind the last step); path_made has
+   been begun. Of path.c and set_up.c alone. */
+extern uint8_t path_complete;
+extern uint8_t path_ended;
+extern uint8_t path_started;
+extern uint8_t path_begun;
 
 /* Starts a chain at the present tool position. */
 void path_begin(void);

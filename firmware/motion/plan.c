@@ -2,12 +2,10 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "motion/plan.h"
-#include "link/protocol.h"      /* settings */
 #include "motion/interpolate.h" /* stretch of a slope */
 #include "motion/path.h"        /* segments */
 #include "motion/ramp.h"        /* braking distances */
 #include "sfr.h"                /* INTCON */
-#include "store/settings.h"     /* limits */
 
 #define GIEL_MASK 0x40
 #define UNIT 128  /* a direction of length 1 */
@@ -15,24 +13,17 @@
 #define NO_LIMIT 0xFFFF
 #define BACK (UNIT + UNIT / 8) /* more than a stop: the axis turns back */
 
-static uint16_t start_x; /* start/stop speeds, step/s */
-static uint16_t start_z;
-static uint16_t maximum_x;
-static uint16_t maximum_z;
+uint16_t plan_start_x;
+uint16_t plan_start_z;
+uint16_t plan_maximum_x;
+uint16_t plan_maximum_z;
+
 /* Direction at the end of the last segment, and the one asked for. */
 static int16_t end_x;
 static int16_t end_z;
 static int16_t unit_x;
 static int16_t unit_z;
 static uint8_t standing;
-
-void plan_configure(void)
-{
-    start_x = settings[SETTING_START_RATE_X];
-    start_z = settings[SETTING_START_RATE_Z];
-    maximum_x = ramp_cap(settings[SETTING_RAPID_RATE_X]);
-    maximum_z = ramp_cap(settings[SETTING_RAPID_RATE_Z]);
-}
 
 void plan_begin(void)
 {
@@ -103,8 +94,8 @@ static uint16_t corner(void)
         path_next.kind |= SEGMENT_REST;
         return ramp_stop;
     }
-    speed =
-        smaller_of(axis_limit(start_x, turn_x), axis_limit(start_z, turn_z));
+    speed = smaller_of(axis_limit(plan_start_x, turn_x),
+                       axis_limit(plan_start_z, turn_z));
     return speed == NO_LIMIT ? NO_LIMIT : ramp_distance(speed);
 }
 
@@ -164,7 +155,7 @@ static void plan_arc(uint8_t kind)
 void plan_next(void)
 {
     uint8_t kind = path_next.kind & SEGMENT_KIND;
-    uint16_t most = smaller_of(maximum_x, maximum_z);
+    uint16_t most = smaller_of(plan_maximum_x, plan_maximum_z);
     uint16_t own;
 
     path_next.corner = NO_LIMIT;
@@ -175,8 +166,8 @@ void plan_next(void)
     } else if (kind <= SEGMENT_ARC_CCW) {
         if (kind == SEGMENT_LINE) {
             direction(path_next.dx, path_next.dz);
-            most = smaller_of(axis_limit(maximum_x, magnitude(unit_x)),
-                              axis_limit(maximum_z, magnitude(unit_z)));
+            most = smaller_of(axis_limit(plan_maximum_x, magnitude(unit_x)),
+                              axis_limit(plan_maximum_z, magnitude(unit_z)));
             path_next.corner = corner();
         } else {
             plan_arc(kind);

@@ -19,8 +19,11 @@
 
 #include <stdint.h>
 
-/* Takes the axes' limits from the settings. */
-void plan_configure(void);
+/* The axes' limits, step/s: start/stop speeds, highest speeds. */
+extern uint16_t plan_start_x;
+extern uint16_t plan_start_z;
+extern uint16_t plan_maximum_x;
+extern uint16_t plan_maximum_z;
 
 /* Forgets the direction of the segment before: the tool stands. */
 void plan_begin(void);

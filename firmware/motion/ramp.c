@@ -10,12 +10,9 @@
 
 /* ramp_tick.asm */
 extern volatile uint32_t ramp_start;
-extern volatile uint32_t ramp_top;
-extern volatile uint16_t ramp_step;
 extern volatile uint16_t ramp_scale; /* override, 256 = 100 % */
 extern volatile uint8_t ramp_flags;
 extern volatile uint16_t ramp_brake_speed;
-extern volatile uint16_t ramp_brake_factor;
 extern volatile uint16_t ramp_brake_distance;
 extern volatile uint16_t ramp_way;
 void ramp_brake(void);
@@ -56,14 +53,9 @@ uint16_t ramp_cap(uint16_t speed)
     return speed;
 }
 
-void ramp_configure(uint16_t acceleration, uint16_t start, uint16_t top)
+void ramp_set_stop(void)
 {
-    ramp_start = (uint32_t)start << 8;
-    ramp_step = acceleration >> 2;
-    ramp_brake_factor = (uint16_t)((1ul << 24) / acceleration);
-    ramp_top = (uint32_t)ramp_cap(top) << 8;
-    ramp_scale = 256;
-    ramp_stop = ramp_distance(start);
+    ramp_stop = ramp_distance((uint16_t)(ramp_start >> 8));
 }
 
 /* The next entry takes what is wanted now, without waiting for its turn; an

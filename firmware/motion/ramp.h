@@ -44,14 +44,10 @@ void ramp_set_override(uint8_t percent);
 /* Braking distance from the start/stop speed, 1/2 step: what may be left at
    the end of a chain. */
 extern volatile uint16_t ramp_stop;
+void ramp_set_stop(void); /* once that speed is set (set_up.c) */
 
 /* Speed now, 1/256 step/s. */
 extern volatile uint32_t ramp_speed;
-
-/* Acceleration a, step/s^2, 1,100..32,000; start/stop speed and the speed
-   that no override exceeds, step/s. */
-void ramp_configure(uint16_t acceleration, uint16_t start_speed,
-                    uint16_t top_speed);
 
 /* Braking distance from a speed, step/s, in 1/2 steps. Main loop. */
 uint16_t ramp_distance(uint16_t speed);

@@ -14,13 +14,6 @@
 #define START_DELAY_H 0x2E         /* 0x2EE0 cycles = 1 ms */
 #define START_DELAY_L 0xE0
 
-#define COILS_HALF 2
-#define COILS_STEP_DIR 3
-#define ENABLE_OUTPUT 0x04
-
-extern volatile uint8_t stream_step_dir;
-extern volatile uint8_t stream_invert_x;
-extern volatile uint8_t stream_invert_z;
 extern volatile uint8_t stream_next;
 extern volatile uint8_t step_ring[256];
 extern volatile uint8_t coils_x[8];
@@ -33,44 +26,12 @@ extern volatile uint8_t phase_step;
 
 uint8_t stream_low;
 
-/*
- * Coil patterns in forward order, phase 1 = bit 0. Even entries have two
- * phases on, odd ones one: every second entry from an even place is the full
- * step sequence 5, 9, 10, 6, from an odd place the wave sequence 1, 8, 2, 4,
- * and all eight are half steps.
- */
-static __code const uint8_t forward[8] = {5, 1, 9, 8, 10, 2, 6, 4};
-
 void stream_init(void)
 {
     CCP2CON = CCP_COMPARE_INTERRUPT;
     T1CON = TIMER1_FREE_RUNNING;
     IPR2 = CCP2IE_MASK; /* all else is of low priority */
     PIE2 |= TMR3IE_MASK;
-}
-
-void stream_set_coils(uint8_t mode, uint8_t invert_x, uint8_t invert_z)
-{
-    uint8_t i;
-
-    for (i = 0; i < 8; i++) {
-        uint8_t backward = (8 - i) & 7;
-
-        coils_x[i] = forward[invert_x ? backward : i];
-        coils_z[i] = forward[invert_z ? backward : i];
-        if (mode == COILS_STEP_DIR) {
-            coils_x[i] = ENABLE_OUTPUT;
-            coils_z[i] = ENABLE_OUTPUT;
-        }
-    }
-    stream_step_dir = mode == COILS_STEP_DIR;
-    stream_invert_x = invert_x << 1;
-    stream_invert_z = invert_z << 1;
-    phase_step = mode == COILS_HALF ? 1 : 2;
-    if (mode < COILS_HALF) {
-        phase_x = (phase_x & 6) | mode;
-        phase_z = (phase_z & 6) | mode;
-    }
 }
 
 void stream_coils_on(void)

@@ -2,10 +2,8 @@
    SPDX-License-Identifier: Apache-2.0 */
 
 #include "panel/led.h"
-#include "board.h"         /* LED_STATUS_MASK */
 #include "lathe/machine.h" /* state, alarm */
 #include "link/protocol.h" /* STATE_..., ALARM_NONE */
-#include "sfr.h"           /* LATC */
 #include "tick.h"          /* tick_now */
 
 #define STARTUP_MS 2000
@@ -67,8 +65,8 @@ void led_poll(void)
         }
     }
     if (lit) {
-        LATC |= LED_STATUS_MASK;
+        led_on();
     } else {
-        LATC &= (uint8_t)~LED_STATUS_MASK;
+        led_off();
     }
 }

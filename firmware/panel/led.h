@@ -22,4 +22,8 @@ void led_poll(void);
 /* Flashes a number once while the machine is idle; 0 does nothing. */
 void led_show(uint8_t flashes);
 
+/* The lamp itself. */
+void led_on(void);
+void led_off(void);
+
 #endif

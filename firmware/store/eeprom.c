@@ -40,9 +40,3 @@ void eeprom_start(uint8_t address, uint8_t value)
     EECON1 &= (uint8_t)~EECON1_WREN;
     INTCON |= interrupts;
 }
-
-void eeprom_write(uint8_t address, uint8_t value)
-{
-    eeprom_start(address, value);
-    eeprom_read(address);
-}

@@ -19,7 +19,7 @@ ESTOP_PIN = "RD7"
 #: Simulated seconds after which a request without answer is a hang.
 HANG_S = 2.0
 #: Counters with their sizes, which reach their upper bytes by and by.
-COUNTERS = {"milliseconds": 4, "frame_bad_frames": 2}
+COUNTERS = {"milliseconds": 2, "tick_high": 2, "frame_bad_frames": 2}
 #: What happens by itself happens within this simulated time.
 LONG_S = 3.0
 IMAGE = bytes(range(84))

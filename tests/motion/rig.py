@@ -234,7 +234,8 @@ class Rig:
         self.host.unplug()
         self.chip.reset(Reset.MCLR)
         self._resets = len(self.chip.resets)
-        if not self.chip.run_to_address(self.symbols.code("path_configure")):
+        # The first that the machine does with its settings loaded.
+        if not self.chip.run_to_address(self.symbols.code("path_cancel")):
             raise MotionFault("the firmware does not take its settings into use")
         base = self.symbols.ram("settings")
         for name, value in self._settings.items():

@@ -209,7 +209,7 @@ def _acknowledged(walker: Walker, before: Seen, moved: bool) -> None:
 def _restarted(walker: Walker, before: Seen, _moved: bool) -> None:
     bench = walker.bench
     _powerless(walker, before, False)
-    assert bench.chip.variable("commands_reset_cause") == ResetCause.BROWN_OUT
+    assert bench.status().reset_cause == ResetCause.BROWN_OUT
     assert bench.chip.variable("machine_slot") == 0xFF
 
 

@@ -17,6 +17,7 @@ from .panel_font import HEIGHT, WIDTH, Rows
 DOT, PITCH, GAP, MARGIN, BEZEL = 5, 6, 6, 20, 14
 COLOURS = BLACK, GLASS, UNLIT, DARK = "#202020", "#a8c81e", "#a0be1c", "#1d2b08"
 
+KINDS = (".png", ".svg")
 Square = tuple[int, int, str]
 
 
@@ -49,7 +50,7 @@ def draw_glass(cells: list[list[Rows]], path: Path) -> None:
         ValueError: the name ends neither in ``.png`` nor in ``.svg``.
     """
     kind = path.suffix.lower()
-    if kind not in (".png", ".svg"):
+    if kind not in KINDS:
         raise ValueError(f"{path.name}: a picture of the panel is a .png or a .svg")
     if kind == ".svg":
         path.write_text(_svg(cells), encoding="utf-8")

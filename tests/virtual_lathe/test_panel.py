@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import pytest
 from PIL import Image
+from simulated.processes import branch, on_a_new_chip
 
 from virtual_lathe.chip import CYCLES_PER_SECOND, Chip, NonVolatile, Reset
 from virtual_lathe.lathe import Options, VirtualLathe
@@ -183,6 +184,23 @@ def test_a_power_cycle_empties_the_display_and_any_reset_can_be_recovered_from(
     assert in_new_process(_resets, program("panel")) == [
         *((BLANK, BLANK), SHOWN, True, SHOWN, []),
     ]
+
+
+def _pressed_key(chip: Chip, panel: Panel) -> tuple[str, int]:
+    panel.hold("back")
+    chip.run(READY_S)
+    return panel.lines()[1][-1], chip.peek(KEY)
+
+
+@on_a_new_chip
+def test_a_branch_has_a_panel_of_its_own(program: Program) -> None:
+    chip, panel = fitted(program("panel"))
+    chip.run(READY_S)
+    assert branch(lambda: _pressed_key(chip, panel)) == ("5", 5)
+    assert panel.lines() == SHOWN
+    chip.run(READY_S)
+    assert panel.lines() == SHOWN
+    assert panel.mistakes == []
 
 
 def _second_power_on(firmware: str) -> list[object]:

@@ -135,6 +135,12 @@ class LcdStateC(Structure):
     ]
 
 
+class LcdByteC(Structure):
+    """struct vl_lcd_byte"""
+
+    _fields_ = [("cycle", c_uint64), ("data", c_uint8), ("value", c_uint8)]
+
+
 class ToolC(Structure):
     """struct vl_tool"""
 
@@ -218,6 +224,7 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_faults": (c_int, [POINTER(FaultC), c_int]),
     "vl_lcd_attach": (None, [c_double]),
     "vl_lcd_read": (None, [POINTER(LcdStateC)]),
+    "vl_lcd_bytes": (c_int, [POINTER(LcdByteC), c_int]),
     "vl_lcd_mistake": (c_int, [c_uint, c_char_p, c_uint]),
     "vl_keys_attach": (None, []),
     "vl_keys_hold": (None, [c_uint]),

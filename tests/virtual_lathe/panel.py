@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .chip import CYCLES_PER_SECOND, Chip
-from .native_library import LcdStateC, library
+from .native_library import LcdByteC, LcdStateC, library
 from .panel_font import CUSTOM_CODES, HEIGHT, Rows, custom_letter, dots, rom_letter
 
 #: In the order of the ladder: of two pressed at once the earlier one counts.
@@ -27,6 +27,7 @@ TYPICAL_KHZ, SLOWEST_KHZ = 270.0, 190.0
 #: A blinking character is black this long, then visible as long: 102,400 periods of the clock.
 BLINK_S = 102.4 / TYPICAL_KHZ
 _TEXT_BYTES = 256
+_BATCH = 4096
 _FULL_CELL: Rows = (0x1F,) * HEIGHT
 _CURSOR_ROW = 0x1F
 
@@ -46,6 +47,15 @@ class Glass:
     place: tuple[int, int] | None
     #: Bytes taken since power came.
     writes: int
+
+
+@dataclass(frozen=True)
+class LcdByte:
+    """One byte to the display, with the cycle of the fall of E that completed it."""
+
+    cycle: int
+    data: bool
+    value: int
 
 
 class Panel:
@@ -137,6 +147,14 @@ class Panel:
             for codes in glass.codes
         )
         return first, second
+
+    def take_bytes(self) -> list[LcdByte]:
+        """Return and forget the bytes that the display has taken so far, those lost left out."""
+        entries = (LcdByteC * _BATCH)()
+        found: list[LcdByte] = []
+        while count := self._native.vl_lcd_bytes(entries, _BATCH):
+            found += [LcdByte(e.cycle, bool(e.data), e.value) for e in entries[:count]]
+        return found
 
     def cells(self) -> list[list[Rows]]:
         """Return the dots of every cell of both lines as they are seen now, cursor included."""

@@ -15,7 +15,7 @@ from simulated.processes import branch, on_a_new_chip
 from virtual_lathe.chip import CYCLES_PER_SECOND, Chip, NonVolatile, Reset
 from virtual_lathe.lathe import Options, VirtualLathe
 from virtual_lathe.machine import AxisOptions, Machine
-from virtual_lathe.panel import COLUMNS, KEYS, Panel
+from virtual_lathe.panel import COLUMNS, KEYS, LcdByte, Panel
 from virtual_lathe.panel_font import Rows, dots
 from virtual_lathe.panel_picture import DARK, DOT, size, squares
 from virtual_lathe.worker import in_new_process
@@ -27,7 +27,6 @@ SHOWN = ("Diámetro 25.4°  ", "A/¥→\N{REPLACEMENT CHARACTER}          8")
 #: The program has written everything after 25 ms.
 READY_S = 0.04
 LEVEL, KEY, STARTS = 0x20, 0x21, 0x22
-NO_KEY = 8
 
 
 def fitted(firmware: str) -> tuple[Chip, Panel]:
@@ -51,6 +50,27 @@ def test_a_program_wakes_the_display_and_writes_text_and_custom_characters(
     assert in_new_process(_text, program("panel")) == [
         *((BLANK, BLANK), SHOWN, codes, True, False, []),
     ]
+
+
+def _bytes(firmware: str) -> tuple[list[LcdByte], int]:
+    chip, panel = fitted(firmware)
+    chip.run(READY_S)
+    return panel.take_bytes(), len(panel.take_bytes())
+
+
+def test_every_byte_has_the_exact_cycle_of_the_fall_of_e(program: Program) -> None:
+    found, left = in_new_process(_bytes, program("panel"))
+    # D0 to D3 are open, and high, until the display knows that there are none.
+    assert [byte.value for byte in found[:9]] == [
+        *(0x3F, 0x3F, 0x3F, 0x2F, 0x28, 0x08, 0x01, 0x06, 0x0C),
+    ]
+    letters = found[10 + 16 + 1 :][:15]
+    assert bytes(byte.value for byte in letters) == b"Di\0metro 25.4\xdf"[:14] + b"\xc0"
+    # The key's place and the key: 38 us in 455 cycles, and 56 to get there and back.
+    place, key = found[-2:]
+    assert (place.data, place.value, key.data, key.value) == (False, 0xCF, True, ord("8"))
+    assert key.cycle - place.cycle == 455 + 56
+    assert left == 0
 
 
 def _keys(firmware: str) -> list[tuple[int, int]]:

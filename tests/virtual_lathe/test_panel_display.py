@@ -213,6 +213,20 @@ def test_the_slowest_clock_of_a_display_takes_longer(program: Program) -> None:
     assert "busy with the last byte" in early[0]
 
 
+def _too_early(firmware: str) -> list[object]:
+    hand = Hand(firmware)
+    for letter in "ab":
+        hand.byte(ord(letter), data=1)
+    hand.chip.run(1e-4)
+    hand.write("c")
+    return [hand.panel.lines()[0].rstrip(), len(hand.panel.mistakes)]
+
+
+def test_what_comes_while_the_display_is_busy_is_lost(program: Program) -> None:
+    # Both halves of the b.
+    assert in_new_process(_too_early, program("spin")) == ["ac", 2]
+
+
 def _both_at_once(firmware: str) -> list[str]:
     hand = Hand(firmware)
     hand.set(LATE, E)

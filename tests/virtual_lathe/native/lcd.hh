@@ -53,6 +53,7 @@ public:
     // Frequency of the display's own clock: 190 to 350 kHz, typically 270.
     void attach(double oscillator_khz);
     LcdController controller;
+    std::vector<vl_lcd_byte> bytes;
     Mistakes mistakes;
 
 private:
@@ -62,6 +63,7 @@ private:
     void enable_falls(uint64_t cycle, uint64_t levels);
     void strobe(uint64_t cycle, bool data, unsigned nibble);
     void wake(bool data, unsigned nibble);
+    double execute(uint64_t cycle, bool data, unsigned byte, Mistakes &found);
     void wait(uint64_t cycle, double us, const char *what);
 
     double slowness_ = 1; // 270 kHz by the display's frequency

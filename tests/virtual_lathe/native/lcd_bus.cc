@@ -43,6 +43,7 @@ constexpr uint64_t cycles(double ns)
 
 constexpr uint64_t PULSE_CYCLES = cycles(230), PERIOD_CYCLES = cycles(500);
 constexpr uint64_t ADDRESS_CYCLES = cycles(40), DATA_CYCLES = cycles(80);
+constexpr size_t BYTES_MAX = 65536;
 constexpr double TYPICAL_KHZ = 270;
 constexpr double LONG_US = 1000; // what takes longer is clear or home
 
@@ -158,10 +159,10 @@ void LcdBus::strobe(uint64_t cycle, bool data, unsigned nibble)
     double us = 0;
     if (controller.eight_bits()) {
         // D0 to D3 are open, with pull-ups inside the display.
-        us = controller.execute(data, nibble << 4 | 15, found);
+        us = execute(cycle, data, nibble << 4 | 15, found);
         half_ = false;
     } else if (half_) {
-        us = controller.execute(data, first_half_ << 4 | nibble, found);
+        us = execute(cycle, data, first_half_ << 4 | nibble, found);
         half_ = false;
     } else {
         first_half_ = nibble;
@@ -172,6 +173,14 @@ void LcdBus::strobe(uint64_t cycle, bool data, unsigned nibble)
         wait(cycle, WAKE_US[step], "the wake-up sequence");
     else
         wait(cycle, us, us > LONG_US ? "clear or home" : "the last byte");
+}
+
+double LcdBus::execute(uint64_t cycle, bool data, unsigned byte,
+                       Mistakes &found)
+{
+    if (bytes.size() < BYTES_MAX)
+        bytes.push_back({cycle, data, uint8_t(byte)});
+    return controller.execute(data, byte, found);
 }
 
 // Counts the steps of the wake-up sequence, whether the display still waits
@@ -194,3 +203,8 @@ void LcdBus::wake(bool data, unsigned nibble)
 }
 
 } // namespace lathe
+
+int vl_lcd_bytes(struct vl_lcd_byte *entries, int room)
+{
+    return lathe::take(lathe::lcd().bytes, entries, room);
+}

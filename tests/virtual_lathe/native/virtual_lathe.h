@@ -264,6 +264,14 @@ struct vl_lcd_state {
     uint64_t writes;   /* bytes taken since power came */
 };
 void vl_lcd_read(struct vl_lcd_state *state);
+/* Every byte, with the cycle of the fall of E that completed it.  Hands out
+ * the oldest entries, of at most 65,536, and forgets them. */
+struct vl_lcd_byte {
+    uint64_t cycle;
+    uint8_t data; /* 0: an instruction */
+    uint8_t value;
+};
+int vl_lcd_bytes(struct vl_lcd_byte *entries, int room);
 /* Text of the n-th mistake of the firmware; -1 when there are fewer. */
 int vl_lcd_mistake(unsigned index, char *text, unsigned room);
 

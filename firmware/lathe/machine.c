@@ -56,9 +56,9 @@ static void raise(uint8_t alarm, uint8_t detail)
 {
     path_cancel();
     guard_stop_at(0, 0);
-    machine_state = STATE_ALARM;
     machine_alarm = alarm;
     machine_alarm_detail = detail;
+    machine_state = STATE_ALARM;
     set_homed(0);
 }
 

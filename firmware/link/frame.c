@@ -153,9 +153,7 @@ static void forget(void)
     started = 0;
     until_zero = 0;
     packet_at = 0;
-    if (cdc_received()) {
-        cdc_release();
-    }
+    cdc_release();
 }
 
 void frame_poll(void)

@@ -12,6 +12,7 @@
 #define FIRMWARE_VERSION_PATCH              0
 #define USB_VENDOR_ID                       0x1209
 #define USB_PRODUCT_ID                      0x0001
+#define USB_LOADER_PRODUCT_ID               0x0002
 
 /* Frame: seq, code, payload, CRC low byte first, all in COBS, then 0x00. */
 #define FRAME_PAYLOAD_MAX                   56
@@ -73,6 +74,8 @@
 #define WIDTH_MAX                           8000
 /* steps, largest radius of an arc */
 #define RADIUS_MAX                          32000
+/* what LOADER must carry: no other request becomes one by a damaged byte */
+#define LOADER_MAGIC                        21580
 /* progress of a finished run */
 #define PERMILLE_DONE                       1000
 
@@ -284,6 +287,15 @@
 #define TOUCH_RESPONSE_SIZE                 1
 #define TOUCH_X_AT                          0
 #define TOUCH_Z_AT                          4
+/* Restart into the boot loader, for another firmware. Answered; 50 ms later
+ * the port vanishes, and that of the loader comes. Idle or under an alarm,
+ * and at rest; else BUSY. Like the head of HELLO it stays as it is in every
+ * version, so that any tornillo can update any firmware. OUT_OF_RANGE:
+ * another magic. */
+#define COMMAND_LOADER                      0x0E
+#define LOADER_REQUEST_SIZE                 2
+#define LOADER_RESPONSE_SIZE                1
+#define LOADER_MAGIC_AT                     0
 /* Which part was begun and not finished, and how far did it come? Known
  * without power too; forgotten when a part is begun anew. */
 #define COMMAND_PROGRESS                    0x0F

@@ -55,6 +55,7 @@ def constants(model: Model) -> list[str]:
         define("FIRMWARE_VERSION_PATCH", patch),
         define("USB_VENDOR_ID", f"0x{raw['usb']['vendor_id']:04X}"),
         define("USB_PRODUCT_ID", f"0x{raw['usb']['product_id']:04X}"),
+        define("USB_LOADER_PRODUCT_ID", f"0x{raw['usb']['loader_product_id']:04X}"),
         "",
         *comment("Frame: seq, code, payload, CRC low byte first, all in COBS, then 0x00."),
         define("FRAME_PAYLOAD_MAX", frame["payload_max"]),

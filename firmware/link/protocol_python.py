@@ -64,6 +64,7 @@ def constants(model: Model) -> list[str]:
         f'FIRMWARE_VERSION = "{raw["firmware"]["version"]}"',
         f"USB_VENDOR_ID = 0x{raw['usb']['vendor_id']:04X}",
         f"USB_PRODUCT_ID = 0x{raw['usb']['product_id']:04X}",
+        f"USB_LOADER_PRODUCT_ID = 0x{raw['usb']['loader_product_id']:04X}",
         f"FRAME_PAYLOAD_MAX = {frame['payload_max']}",
         f"FRAME_TIMEOUT_MS = {frame['timeout_ms']}",
         f"FRAME_TRIES = {frame['tries']}",

@@ -144,7 +144,9 @@ void cdc_pump(void)
         usb_sending = 0;
         return;
     }
-    if (!(busy & EP2_OUT_BIT) && !usb_received) {
+    /* While the main loop has not yet forgotten who was there before, whoever
+     * comes next is made to wait. */
+    if (!(busy & EP2_OUT_BIT) && !usb_received && !cdc_closed) {
         usb_bd[BD_EP2_OUT].cnt = EP2_SIZE;
         usb_bd[BD_EP2_OUT].stat = handover(EP2_OUT_BIT);
     }
@@ -170,11 +172,14 @@ static void set_line_state(void)
     }
     cdc_closed = 1;
     usb_sending = 0;
-    if (usb_halted & EP2_IN_BIT) {
-        return;
+    if (!(usb_halted & EP2_OUT_BIT)) {
+        usb_bd[BD_EP2_OUT].stat = 0;
+        usb_armed &= (uint8_t)~EP2_OUT_BIT;
     }
-    usb_bd[BD_EP2_IN].stat = 0;
-    usb_armed &= (uint8_t)~EP2_IN_BIT;
+    if (!(usb_halted & EP2_IN_BIT)) {
+        usb_bd[BD_EP2_IN].stat = 0;
+        usb_armed &= (uint8_t)~EP2_IN_BIT;
+    }
 }
 
 uint8_t cdc_request(void)

@@ -85,12 +85,12 @@ extern volatile uint8_t cdc_packet[CDC_PACKET_SIZE];
 /* Bytes in cdc_packet, 1..64; 0 = no packet. */
 uint8_t cdc_received(void);
 
-/* Done with cdc_packet. Only after cdc_received() was not 0. */
+/* Done with cdc_packet. Only after cdc_received() was not 0, or cdc_closed. */
 void cdc_release(void);
 
 /* Not 0 = the port was closed, the bus reset or the cable pulled since the
  * main loop last cleared it: what has arrived before belongs to somebody who
- * is gone. */
+ * is gone. No packet is taken until it is cleared and cdc_release() called. */
 extern volatile uint8_t cdc_closed;
 
 /* ---- Sending (main loop) ------------------------------------------------ */

@@ -33,9 +33,8 @@ def stored(bench: Bench) -> bytes:
 def assert_runnable(bench: Bench) -> None:
     """Check that the chip starts to cut the selected part."""
     bench.host.run()
-    bench.run(0.03)  # it looks ahead before the first step
     assert bench.is_in(State.RUNNING)
-    assert bench.moving
+    bench.wait(lambda: bench.moving, 0.2)  # it looks ahead before the first step
     bench.host.stop()
 
 

@@ -43,8 +43,7 @@ def about(milliseconds: float) -> object:
 @on_a_new_chip
 def test_after_a_reset_the_led_is_lit_for_two_seconds_and_then_blinks_slowly() -> None:
     bench = Bench()
-    bench.run(0.02)
-    assert bench.chip.level(LED) == 1
+    bench.wait(lambda: bench.chip.level(LED) == 1, 0.1)
     bench.chip.log_pins(LED)
     bench.run(5.0)
     (first, _), *_ = changes = bench.chip.pin_changes()
@@ -65,9 +64,10 @@ def test_it_is_lit_when_homed_and_nearly_always_while_moving() -> None:
     lit = [length for on, length in moving if on]
     dark = [length for on, length in moving if not on]
     assert lit == [about(448)] * len(lit)
-    assert dark == [about(64)] * len(dark)
+    # It may begin to move in the middle of a dark time.
+    assert dark[1:] == [about(64)] * len(dark[1:])
     assert lit
-    assert dark
+    assert dark[1:]
 
 
 @on_a_new_chip
@@ -91,7 +91,7 @@ def raise_alarm(bench: Bench, alarm: Alarm) -> None:
     elif alarm is Alarm.STOPPED_HOMING:
         bench.host.home()
         bench.host.stop()
-    bench.run(0.02)
+    bench.wait_for(State.ALARM)
     assert bench.alarm[0] is alarm
 
 

@@ -61,7 +61,10 @@ def test_a_jog_has_the_rate_asked_for(rate: int) -> None:
     still(bench)
     times = entries(bench.chip.pin_changes())
     assert len(times) == 30
-    assert {b - a for a, b in pairwise(times)} == {CYCLES_PER_SECOND // rate}
+    # A read of flash holds an interrupt up by a cycle.
+    assert {b - a for a, b in pairwise(times)} <= {
+        CYCLES_PER_SECOND // rate + i for i in (-1, 0, 1)
+    }
 
 
 @pytest.mark.parametrize("move", ["jog", "goto"])
@@ -112,9 +115,9 @@ def test_places_that_the_chip_cannot_count_to_are_refused() -> None:
     bench = homed()
     link = Link(bench.lathe.port)
     link.request(Command.HELLO)
-    for command in (Command.JOG, Command.GOTO):
+    for command, rest in ((Command.JOG, (0, 500)), (Command.GOTO, (0,))):
         for place in (40_000, -40_000, 2**31 - 1, -(2**31), -65_556):
-            payload = REQUESTS[command].pack(place, -20, 0)
+            payload = REQUESTS[command].pack(place, -20, *rest)
             answer = bench.refusal(partial(link.request, command, payload))
             assert answer is ErrorCode.OUT_OF_RANGE
     assert bench.is_in(State.IDLE)

@@ -131,7 +131,8 @@ def test_each_of_eight_parts_is_cut_by_the_button_once_it_is_selected() -> None:
         slot = bench.host.find(name).slot
         bench.host.select(slot)
         bench.press("run")
-        assert (bench.state, bench.status().slot) == (State.RUNNING, slot)
+        bench.wait_for(State.RUNNING)
+        assert bench.status().slot == slot
         bench.wait_for(State.IDLE)
         assert bench.status().finished
     little_pin.assert_cut_exactly(bench)
@@ -369,7 +370,7 @@ def cut_by_buttons(memory: NonVolatile) -> None:
     assert bench.is_in(State.HOMING)
     bench.wait_for(State.IDLE)
     bench.press("run")
-    assert bench.is_in(State.RUNNING)
+    bench.wait_for(State.RUNNING)
     bench.wait_for(State.IDLE)
     little_pin.assert_cut_exactly(bench)
     assert bench.lathe.host.counts["transactions"] == 0

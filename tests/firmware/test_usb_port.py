@@ -35,9 +35,9 @@ def test_the_port_says_that_it_is_ready_once_after_configuration() -> None:
 def test_the_host_is_told_to_wait_while_a_reply_has_not_been_fetched() -> None:
     bench = UsbBench().enumerate()
     assert bench.packet(Token.OUT, status(1)).handshake == Handshake.ACK
-    bench.host.wait(0.005)
+    bench.host.wait(0.01)
     assert bench.packet(Token.OUT, status(2)).handshake == Handshake.ACK
-    bench.host.wait(0.005)
+    bench.host.wait(0.01)
     refused = bench.packet(Token.OUT, status(3))
     assert refused.handshake == Handshake.NAK
     assert [decode(bench.packet(Token.IN).data[:-1]).seq for _ in range(2)] == [1, 2]
@@ -68,7 +68,7 @@ def test_a_reply_nobody_fetched_is_dropped_when_the_port_is_closed() -> None:
     bench = UsbBench().enumerate()
     bench.host.control(0x21, SET_CONTROL_LINE_STATE, 3)
     bench.packet(Token.OUT, status(1))
-    bench.host.wait(0.005)
+    bench.host.wait(0.01)
     bench.host.control(0x21, SET_CONTROL_LINE_STATE, 0)
     bench.host.control(0x21, SET_CONTROL_LINE_STATE, 3)
     assert bench.packet(Token.IN, tries=5).handshake == Handshake.NAK
@@ -86,12 +86,13 @@ def test_a_program_that_never_raises_dtr_is_served() -> None:
 @on_a_new_chip
 def test_a_request_whose_ack_got_lost_is_taken_once() -> None:
     bench = UsbBench().enumerate()
+    bench.host.wait(0.005)  # until a packet is taken
     for seq in (1, 2, 3):
         toggle = (seq - 1) % 2
         bench.host.lose_handshakes(1)
         lost = bench.host.transaction(Token.OUT, 2, toggle, status(seq))
         assert lost.handshake == Handshake.NONE
-        bench.host.wait(0.005)
+        bench.host.wait(0.01)
         again = bench.host.transaction(Token.OUT, 2, toggle, status(seq))
         assert again.handshake == Handshake.ACK
         assert decode(bench.packet(Token.IN).data[:-1]).seq == seq
@@ -103,7 +104,7 @@ def test_a_reply_whose_ack_got_lost_is_sent_again_with_the_same_toggle() -> None
     bench = UsbBench().enumerate()
     for seq in (1, 2, 3):
         bench.packet(Token.OUT, status(seq))
-        bench.host.wait(0.005)
+        bench.host.wait(0.01)
         bench.host.lose_handshakes(1)
         lost = bench.host.transaction(Token.IN, 2)
         again = bench.packet(Token.IN)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import pytest
 from simulated.processes import on_a_new_chip
+from tornillo.protocol import Command, HomedAxis
 
 from fuzz import frames, transfers
 from fuzz.frames import FrameFuzzer
@@ -68,7 +69,7 @@ def test_a_stray_write_would_be_seen() -> None:
 def test_a_frame_that_moves_the_lathe_would_be_seen() -> None:
     target = Target()
     target.check_alive()
-    target.bench.send_raw(frame(1, 3))
+    target.bench.send_raw(frame(1, Command.HOME, bytes([HomedAxis.X | HomedAxis.Z])))
     target.bench.host.wait(0.2)
     with pytest.raises(Broken, match="moved"):
         target.check()

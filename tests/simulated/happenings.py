@@ -12,7 +12,7 @@ from tornillo.protocol import Command, ErrorCode, HomedAxis, SettingId, State
 from virtual_lathe.chip import NonVolatile, Reset
 from virtual_lathe.machine import AxisName
 
-from simulated.situations import IDLE_MS, OTHER, ROUNDING, Walker
+from simulated.situations import IDLE_MS, OTHER, PATIENCE_MS, ROUNDING, Walker
 
 #: Values of every command that has some.
 VALUES: dict[Command, tuple[int, ...]] = {
@@ -26,6 +26,8 @@ VALUES: dict[Command, tuple[int, ...]] = {
     Command.SETTING_GET: (SettingId.HOME_RATE,),
     Command.SETTING_SET: (SettingId.HOME_RATE, 500),
 }
+#: What a move by hand takes beside its place: rate and patience, rate, nothing.
+AFTER_THE_PLACE = {Command.JOG: (0, PATIENCE_MS), Command.GOTO: (0,), Command.TOUCH: ()}
 SERIAL = b"WALKED-1"
 RECORDS = (0x00, 0x70)
 ESTOP = 0x04  # of inputs_state
@@ -38,9 +40,9 @@ NEAR_BY = 100
 CENTRE_OFF = 2  # steps
 #: Machine code of RETURN, and the longest that the queue lasts at the speeds of the walk.
 RETURN = b"\x12\x00"
-QUEUE_S, SLOW_QUEUE_S = 0.5, 1.5
+QUEUE_S, SLOW_QUEUE_S = 0.5, 2.8
 HEARD_S = 0.2
-#: A bit more than DEADMAN_MS of firmware/config.h.
+#: A bit more than the patience of a JOG, and than DEADMAN_MS of firmware/config.h.
 SILENCE_S = 0.6
 
 
@@ -52,7 +54,7 @@ def _command(command: Command, walker: Walker) -> None:
         walker.send(command, walker.other)
     elif command in (Command.JOG, Command.GOTO, Command.TOUCH):
         x, z = walker.bench.position
-        walker.send(command, x - NEAR_BY, z, *(() if command is Command.TOUCH else (0,)))
+        walker.send(command, x - NEAR_BY, z, *AFTER_THE_PLACE[command])
     elif command is Command.SERIAL_SET:
         walker.send(command, SERIAL)
     elif command is Command.UPLOAD_DATA:
@@ -158,7 +160,7 @@ def _dry(walker: Walker) -> None:
 
 
 def _bad_arc(walker: Walker) -> None:
-    """Move the centre of the rounding in flash by some steps."""
+    """Move the centre of the rounding in flash by some steps, for a while."""
     bench = walker.bench
     memory = bench.chip.save()
     centre = pack_segments((ROUNDING,))[-6:]
@@ -168,6 +170,7 @@ def _bad_arc(walker: Walker) -> None:
     if bench.is_in(State.RUNNING):
         bench.wait(lambda: not bench.is_in(State.RUNNING), 20.0)
     bench.run(0.02)
+    bench.chip.restore(NonVolatile(memory.flash, bench.chip.save().eeprom))
 
 
 def _idle_time(walker: Walker) -> None:

@@ -29,6 +29,8 @@ IDLE_MS = 700
 START_X = -900
 #: Where moves by hand go to, in front of the bar, and how fast: contact is a collision then.
 FAR_X, FAST = -300, 300
+#: How long a JOG goes on when the host is not heard.
+PATIENCE_MS = 500
 
 
 @dataclass
@@ -120,7 +122,7 @@ def _moving() -> Walker:
 def _adrift() -> Walker:
     """The same by jogging, not homed."""
     walker = _unhomed()
-    walker.send(Command.JOG, FAR_X, walker.bench.position[1], FAST)
+    walker.send(Command.JOG, FAR_X, walker.bench.position[1], FAST, PATIENCE_MS)
     walker.bench.run(0.1)
     return walker
 

@@ -12,6 +12,7 @@ PROTOCOL_VERSION = 3
 FIRMWARE_VERSION = "0.1.0"
 USB_VENDOR_ID = 0x1209
 USB_PRODUCT_ID = 0x0001
+USB_LOADER_PRODUCT_ID = 0x0002
 FRAME_PAYLOAD_MAX = 56
 FRAME_TIMEOUT_MS = 250
 FRAME_TRIES = 5
@@ -67,6 +68,8 @@ STOCK_FRONT_MAX = 8000
 WIDTH_MAX = 8000
 #: steps, largest radius of an arc
 RADIUS_MAX = 32000
+#: what LOADER must carry: no other request becomes one by a damaged byte
+LOADER_MAGIC = 21580
 #: progress of a finished run
 PERMILLE_DONE = 1000
 
@@ -87,6 +90,7 @@ class Command(IntEnum):
     JOG = 0x0B
     GOTO = 0x0C
     TOUCH = 0x0D
+    LOADER = 0x0E
     PROGRESS = 0x0F
     UPLOAD_BEGIN = 0x10
     UPLOAD_DATA = 0x11
@@ -309,6 +313,7 @@ REQUESTS = {
     Command.JOG: Struct("<iiHH"),
     Command.GOTO: Struct("<iiH"),
     Command.TOUCH: Struct("<ii"),
+    Command.LOADER: Struct("<H"),
     Command.PROGRESS: Struct("<"),
     Command.UPLOAD_BEGIN: Struct("<HH"),
     Command.UPLOAD_DATA: Struct("<H"),
@@ -336,6 +341,7 @@ RESPONSES = {
     Command.JOG: Struct("<"),
     Command.GOTO: Struct("<"),
     Command.TOUCH: Struct("<"),
+    Command.LOADER: Struct("<"),
     Command.PROGRESS: Struct("<BHBB"),
     Command.UPLOAD_BEGIN: Struct("<"),
     Command.UPLOAD_DATA: Struct("<"),

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
+from itertools import accumulate
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -21,6 +23,7 @@ from virtual_lathe.panel_picture import DARK, DOT, size, squares
 from virtual_lathe.worker import in_new_process
 
 Program = Callable[..., str]
+ROOT = Path(__file__).resolve().parents[2]
 BLANK = " " * COLUMNS
 #: What programs/panel.asm shows without a key; the fifth of the second line is no letter.
 SHOWN = ("Diámetro 25.4°  ", "A/¥→\N{REPLACEMENT CHARACTER}          8")
@@ -89,10 +92,15 @@ def _keys(firmware: str) -> list[tuple[int, int]]:
 
 
 def test_every_key_has_its_voltage_and_none_has_the_supply(program: Program) -> None:
-    # 256 parts of 5 V behind 2k2, from the resistors of the ladder: 0, 330, 720, 1,340, 2,250,
-    # 3,750, 6,750 and 15,850 ohm to ground.
-    levels = [0, 33, 63, 97, 129, 161, 193, 224, 255]
-    assert in_new_process(_keys, program("panel")) == list(zip(levels, range(9), strict=True))
+    design = (ROOT / "hw" / "kicad" / "design" / "panel.py").read_text(encoding="utf-8")
+    on_the_board = re.findall(r'\("R\d+", "(\d+)"\)', design)
+    assert on_the_board == ["330", "390", "620", "910"]
+    ohms = [0, *accumulate([*map(int, on_the_board), 1500, 3000, 9100])]
+    # The upper eight of ten bits, behind 2k2.
+    levels = [round(1024 * ohm / (2200 + ohm)) >> 2 for ohm in ohms]
+    assert levels == [0, 33, 63, 97, 129, 161, 193, 224]
+    wanted = list(zip([*levels, 255], range(9), strict=True))
+    assert in_new_process(_keys, program("panel")) == wanted
 
 
 def _press(firmware: str) -> list[object]:

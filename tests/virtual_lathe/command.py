@@ -5,7 +5,8 @@ It prints the port on the first line of standard output, then a line of state ev
 and writes the report when it ends. Lines typed on standard input press buttons while it runs:
 ``press run``, ``press hold``, ``press stop``, ``press estop``, ``press release``, ``plug``,
 ``unplug``, ``state``, ``quit``. ``tool NAME`` puts another tool of the part into the holder, ``tool
-next`` the one that the part needs next.
+next`` the one that the part needs next. With ``--panel`` display and keys are there too: on a
+terminal its keys press those of the panel, otherwise lines like ``key down`` or ``key x-out 1.5``.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ from .chip import CYCLES_PER_SECOND, EEPROM_BYTES, FLASH_BYTES, NonVolatile
 from .lathe import BUTTONS, DEFAULT_FIRMWARE, Options, VirtualLathe
 from .machine import AxisName
 from .motor import PULL_IN
+from .panel import KEYS, PRESS_S
+from .panel_picture import KINDS
+from .panel_terminal import KeyHand, Screen, actions
 from .terminal import Terminal
 from .usb_host import UsbError
 from .usbip import BUS_ID, Exporter
@@ -38,9 +42,9 @@ MEMORY_BYTES = FLASH_BYTES + EEPROM_BYTES
 
 def _timed(text: str) -> tuple[str, float]:
     name, _, seconds = text.partition("@")
-    if name not in ACTIONS or not seconds:
+    if name not in (*ACTIONS, *KEYS) or not seconds:
         raise argparse.ArgumentTypeError(
-            f"{text!r}: write BUTTON@SECONDS with one of {', '.join(ACTIONS)}"
+            f"{text!r}: write BUTTON@SECONDS with one of {', '.join((*ACTIONS, *KEYS))}"
         )
     return name, float(seconds)
 
@@ -50,6 +54,12 @@ def _listen_address(text: str) -> tuple[str, int]:
     if not name or not port.isdecimal() or int(port) > 0xFFFF:
         raise argparse.ArgumentTypeError(f"{text!r}: write ADDRESS:PORT, like 127.0.0.1:3240")
     return name, int(port)
+
+
+def _picture(text: str) -> Path:
+    if Path(text).suffix.lower() not in KINDS:
+        raise argparse.ArgumentTypeError(f"{text!r}: a picture is a {' or a '.join(KINDS)}")
+    return Path(text)
 
 
 def _nose_radius(text: str) -> float:
@@ -81,6 +91,13 @@ def build_parser() -> argparse.ArgumentParser:
     add("--switch-bounce", type=int, default=0, metavar="US")
     add("--switch-noise", type=int, default=0, metavar="HZ")
     add("--probe", action="store_true", help="wire the contact sensor between tool and work (RA1)")
+    add("--panel", action="store_true", help="fit display and keys; draws them, takes keys")
+    add(
+        "--panel-picture",
+        type=_picture,
+        metavar="FILE",
+        help="draw the display dot by dot at the end, .png or .svg; fits the panel",
+    )
     add("--seed", type=int, default=1)
     add("--press", type=_timed, action="append", default=[], metavar="BUTTON@T")
     add("--unplug", type=float, action="append", default=[], metavar="T", help="same: unplug@T")
@@ -123,6 +140,7 @@ def options_from(arguments: argparse.Namespace) -> Options:
         pull_in=arguments.motor_limit,
         cut_rate_limit=arguments.cut_rate_limit,
         probe=arguments.probe,
+        panel=arguments.panel or arguments.panel_picture is not None,
         bounce_us=arguments.switch_bounce,
         noise_hz=arguments.switch_noise,
         seed=arguments.seed,
@@ -155,6 +173,8 @@ class Session:
             if arguments.usbip
             else None
         )
+        self.hand = KeyHand(self.lathe)
+        self.screen: Screen | None = None
         self.stopped = False
         self.enumerate_wanted = False
         self._stdin_open = not sys.stdin.closed
@@ -163,6 +183,8 @@ class Session:
 
     def _schedule(self) -> None:
         for name, seconds in self.arguments.press:
+            if name in KEYS and not self.lathe.options.panel:
+                raise ValueError(f"--press {name}: no panel is fitted, --panel does it")
             self.lathe.at(seconds, partial(self.act, name))
         for seconds in self.arguments.unplug:
             self.lathe.at(seconds, lambda: self.act("unplug"))
@@ -172,7 +194,10 @@ class Session:
             self.act("plug")
 
     def act(self, name: str) -> None:
-        """Press a button or move the cable."""
+        """Press a button or a key, or move the cable."""
+        if name in KEYS:
+            self.hand.press(name)
+            return
         self.lathe.press(name)
         if name in ("plug", "unplug"):
             self.enumerate_wanted = name == "plug"
@@ -196,18 +221,30 @@ class Session:
     def run(self) -> None:
         """Run until the time is up or somebody ends it."""
         print(self._port_line(), flush=True)
+        if self.arguments.panel:
+            self.screen = Screen(self.lathe)
+        by_hand = self.screen is not None and self.screen.single_keys
         wall_start, next_state = time.monotonic(), time.monotonic() + STATE_EVERY_S
         limit = self.arguments.seconds
         while not self.stopped and (limit is None or self.lathe.seconds < limit):
             self._let_time_pass()
             self._listen()
-            if time.monotonic() >= next_state:
+            if self.screen is not None:
+                self.screen.draw(self.state_line())
+            if time.monotonic() >= next_state and not by_hand:
                 next_state += STATE_EVERY_S
-                print(self.state_line(), flush=True)
-            if self.arguments.real_time:
+                self.say(self.state_line())
+            if self.arguments.real_time or by_hand:
                 ahead = self.lathe.seconds - (time.monotonic() - wall_start)
                 if ahead > 0:
                     time.sleep(ahead)
+
+    def say(self, text: str) -> None:
+        """Print a line, above the panel if there is one."""
+        if self.screen is not None:
+            self.screen.say(text)
+        else:
+            print(text, flush=True)
 
     def _port_line(self) -> str:
         if self.exporter is not None and self.arguments.usbip is not None:
@@ -235,13 +272,20 @@ class Session:
             host.open_port()
             self.enumerate_wanted = False
         except UsbError as error:
-            print(f"usb: {error}", flush=True)
+            self.say(f"usb: {error}")
 
     def _listen(self) -> None:
         if not self._stdin_open or not select.select([sys.stdin], [], [], 0)[0]:
             return
         chunk = os.read(sys.stdin.fileno(), 256)
         self._stdin_open = bool(chunk)
+        if self.screen is not None and self.screen.single_keys:
+            for name in actions(chunk):
+                if name in KEYS:
+                    self.hand.touch(name)
+                else:
+                    self._obey(name.split())
+            return
         self._typed += chunk
         while b"\n" in self._typed:
             line, self._typed = self._typed.split(b"\n", 1)
@@ -251,22 +295,37 @@ class Session:
         if words == ["quit"]:
             self.stopped = True
         elif words == ["state"]:
-            print(self.state_line(), flush=True)
+            self.say(self.state_line())
+        elif words[:1] == ["key"] and 2 <= len(words) <= 3:
+            self._press_key(words[1], words[2] if len(words) == 3 else "")
         elif words and words[-1] in ACTIONS:
             self.act(words[-1])
         elif len(words) == 2 and words[0] == "tool":
             self._change_tool(words[1])
         elif words:
-            print(f"not understood: {' '.join(words)}", flush=True)
+            self.say(f"not understood: {' '.join(words)}")
+
+    def _press_key(self, key: str, seconds: str) -> None:
+        if not self.lathe.options.panel:
+            self.say("no panel is fitted: --panel does it")
+            return
+        try:
+            self.hand.press(key, float(seconds) if seconds else PRESS_S)
+        except ValueError as error:
+            self.say(str(error))
 
     def _change_tool(self, name: str) -> None:
         try:
-            print(f"tool: {self.lathe.change_tool('' if name == 'next' else name)}", flush=True)
+            self.say(f"tool: {self.lathe.change_tool('' if name == 'next' else name)}")
         except ValueError as error:
-            print(error, flush=True)
+            self.say(str(error))
 
     def finish(self) -> None:
-        """Write the report and what must survive."""
+        """Write report and picture and what must survive."""
+        if self.screen is not None:
+            self.screen.close()
+        if self.arguments.panel_picture:
+            self.lathe.panel.picture(self.arguments.panel_picture)
         self.lathe.chip.close_vcd()
         self.terminal.close()
         if self.exporter is not None:

@@ -12,10 +12,11 @@ from typing import Any
 
 from .chip import CYCLES_PER_SECOND, Chip, Drive, InterruptCost, NonVolatile, Stop
 from .configuration import wrong_words
-from .dimensions import Ruler
 from .machine import AxisName, AxisOptions, Fault, FaultKind, Machine, Move
 from .motor import PULL_IN, PULL_OUT
+from .panel import TYPICAL_KHZ, Panel
 from .part import WantedPart, read_part
+from .report import write_report
 from .serial_port import SerialPort
 from .toolbox import Toolbox
 from .usb_host import UsbHost
@@ -46,6 +47,7 @@ class Options:
     ``dry_symbol`` names a variable of the firmware and ``dry_mask`` its bits that are set when the
     step stream has run dry; an empty name checks nothing. With ``probe`` the contact sensor is
     wired: RA1 is low while tool and work touch; what the tool has cut counts as gone after 1 ms.
+    With ``panel`` display and keys are wired; ``panel_khz`` is the display's own clock.
     """
 
     firmware: Path = DEFAULT_FIRMWARE
@@ -71,6 +73,8 @@ class Options:
     dry_symbol: str = ""
     dry_mask: int = 0xFF
     probe: bool = False
+    panel: bool = False
+    panel_khz: float = TYPICAL_KHZ
     bounce_us: int = 0
     noise_hz: int = 0
     seed: int = 1
@@ -124,12 +128,15 @@ class VirtualLathe:
         )
         if self.options.probe:
             self.workpiece.connect_probe()
+        self._panel = (
+            Panel(self.chip, self.run, self.options.panel_khz) if self.options.panel else None
+        )
         self._held: list[Move] = []
-        self._faults: list[Fault] = []
+        self.faults: list[Fault] = []
         self._furthest: dict[AxisName, tuple[float, float]] = {}
         self._timed: list[tuple[int, Callable[[], None]]] = []
         self._dry_at: list[str] = []
-        self._wall_start = time.monotonic()
+        self.wall_start = time.monotonic()
         self.chip.drive(ESTOP_PIN, Drive.LOW)
         for pin in BUTTONS.values():
             self.chip.drive(pin, Drive.OPEN)
@@ -223,10 +230,21 @@ class VirtualLathe:
             if values:
                 low, high = self._furthest.get(name, (values[0] / 2, values[0] / 2))
                 self._furthest[name] = min(low, min(values) / 2), max(high, max(values) / 2)
-        self._faults += self.machine.take_faults()
+        self.faults += self.machine.take_faults()
         symbol = self.options.dry_symbol
         if symbol and not self._dry_at and self.chip.variable(symbol) & self.options.dry_mask:
             self._dry_at.append(f"seen at cycle {self.chip.cycle}")
+
+    @property
+    def panel(self) -> Panel:
+        """Display and keys.
+
+        Raises:
+            RuntimeError: none is fitted.
+        """
+        if self._panel is None:
+            raise RuntimeError("no panel is fitted: Options(panel=True) does it")
+        return self._panel
 
     # -- hands ------------------------------------------------------------------------------------
 
@@ -290,7 +308,7 @@ class VirtualLathe:
     def checks(self) -> list[Check]:
         """Evaluate the expectations that must hold during every run."""
         by_kind: dict[FaultKind, list[str]] = {kind: [] for kind in FaultKind}
-        for fault in self._faults:
+        for fault in self.faults:
             by_kind[fault.kind].append(f"{fault.axis.name} at cycle {fault.cycle}: {fault.value}")
         outside = [
             f"{name.name} {low:g}..{high:g}"
@@ -308,6 +326,7 @@ class VirtualLathe:
             Check("slides inside the travel", tuple(outside)),
             Check("no crash", tuple(str(crash) for crash in self.workpiece.crashes)),
             Check("USB used by the book", tuple(self.host.mistakes)),
+            Check("display by the book", tuple(self._panel.mistakes if self._panel else ())),
             Check("configuration words suit the board", tuple(self._wrong_words())),
             Check("step stream never dry", tuple(self._dry_at)),
             Check("step interrupt inside its window", () if kept else tuple(slow)),
@@ -321,72 +340,9 @@ class VirtualLathe:
         """Return the expectations that did not hold."""
         return [check for check in self.checks() if check.broken]
 
-    def _setup_report(self) -> dict[str, int]:
-        """What a reader of the trace must know besides the trace."""
-        x, z = self.machine.options(AxisName.X), self.machine.options(AxisName.Z)
-        return {
-            "dead_steps_x": x.backlash,
-            "dead_steps_z": z.backlash,
-            "slack_x": x.slack,
-            "slack_z": z.slack,
-            "start_x": x.start,
-            "start_z": z.start,
-            "part_zero_x": self.workpiece.zero_x,
-            "part_zero_z": self.workpiece.zero_z,
-            "stock_radius_steps": self.workpiece.stock.radius,
-            "stock_length_steps": self.workpiece.stock.length,
-            "stock_allowance_steps": self.workpiece.stock.allowance,
-            "step_x_nm": STEP_NM,
-            "step_z_nm": STEP_NM,
-        }
-
     def report(self) -> dict[str, Any]:
         """Return the report as the contract wants it, for JSON."""
         self._collect()
         self.workpiece.cut(self._held)
         self._held = []
-        work = self.workpiece
-        lost = {name: self.lost_steps(name) for name in AxisName}
-        stops = [f for f in self._faults if f.kind == FaultKind.END_STOP]
-        crashes = [crash.as_dict() for crash in work.crashes]
-        if stops:
-            first = stops[0]
-            crashes.append(
-                {
-                    "kind": f"end stop {first.axis.name}",
-                    "seconds": first.cycle / CYCLES_PER_SECOND,
-                    "steps": len(stops),
-                }
-            )
-        cost = self.interrupt_cost()
-        wanted = self.wanted
-        ruler = Ruler(work.surface(wanted), wanted, STEP_NM, STEP_NM) if wanted else None
-        return {
-            "virtual_seconds": self.seconds,
-            "wall_seconds": time.monotonic() - self._wall_start,
-            "cycles": self.chip.cycle,
-            "lost_steps": sum(lost.values()),
-            "lost_steps_x": lost[AxisName.X],
-            "lost_steps_z": lost[AxisName.Z],
-            "crashes": crashes,
-            "gouge_max_steps": work.gouge_max_steps(wanted) if wanted else None,
-            "left_max_steps": work.left_max_steps(wanted) if wanted else None,
-            "profile": work.profile(STEP_NM, STEP_NM, wanted),
-            "dimensions": ruler.dimensions() if ruler else [],
-            "angles": ruler.angles() if ruler else [],
-            "circles": ruler.circles() if ruler else [],
-            "tool": work.tool.name,
-            "nose_radius_mm": round(work.tool.nose * STEP_NM / 1e6, 6),
-            "steps_cutting": work.steps_cutting,
-            "setup": self._setup_report(),
-            "slide_x": self.machine.axis(AxisName.X).slide,
-            "slide_z": self.machine.axis(AxisName.Z).slide,
-            "usb_errors": self.host.mistakes,
-            "usb_counts": self.host.counts,
-            "interrupt_worst_cycles": cost.worst,
-            "interrupt_entries": cost.entries,
-            "stack_depth_max": self.chip.stack_depth_max,
-            "resets": [[cycle, kind.name] for cycle, kind in self.chip.resets],
-            "nonvolatile": self.chip.nonvolatile_counts,
-            "checks": {check.name: list(check.broken) for check in self.checks()},
-        }
+        return write_report(self, STEP_NM)

@@ -123,6 +123,24 @@ class FaultC(Structure):
     _fields_ = [("cycle", c_uint64), ("axis", c_int32), ("kind", c_int32), ("value", c_int64)]
 
 
+class LcdStateC(Structure):
+    """struct vl_lcd_state"""
+
+    _fields_ = [
+        ("ddram", c_uint8 * 80),
+        ("cgram", c_uint8 * 64),
+        *((name, c_uint8) for name in ("on", "two_lines", "cursor", "blink", "in_cgram")),
+        *((name, c_int32) for name in ("address", "shift")),
+        ("writes", c_uint64),
+    ]
+
+
+class LcdByteC(Structure):
+    """struct vl_lcd_byte"""
+
+    _fields_ = [("cycle", c_uint64), ("data", c_uint8), ("value", c_uint8)]
+
+
 class ToolC(Structure):
     """struct vl_tool"""
 
@@ -205,6 +223,13 @@ _SIGNATURES: dict[str, tuple[Any, list[Any]]] = {
     "vl_switch_quality": (None, [c_uint, c_uint, c_uint]),
     "vl_moves": (c_int, [POINTER(MoveC), c_int]),
     "vl_faults": (c_int, [POINTER(FaultC), c_int]),
+    "vl_lcd_attach": (None, [c_double]),
+    "vl_lcd_read": (None, [POINTER(LcdStateC)]),
+    "vl_lcd_bytes": (c_int, [POINTER(LcdByteC), c_int]),
+    "vl_lcd_mistake": (c_int, [c_uint, c_char_p, c_uint]),
+    "vl_keys_attach": (None, []),
+    "vl_keys_hold": (None, [c_uint]),
+    "vl_adc_mistake": (c_int, [c_uint, c_char_p, c_uint]),
     "vl_metal_new": (c_int, [c_double, c_int, c_int]),
     "vl_metal_tool": (None, [c_int, POINTER(ToolC)]),
     "vl_metal_move": (None, [c_int, POINTER(PathC), c_int, POINTER(CutC)]),

@@ -7,6 +7,7 @@
 #ifndef VIRTUAL_LATHE_CHIP_HH
 #define VIRTUAL_LATHE_CHIP_HH
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -162,6 +163,15 @@ private:
 };
 
 Chip &chip();
+
+// Hands out the oldest entries of a log and forgets them; returns how many.
+template <typename T> int take(std::vector<T> &from, T *entries, int room)
+{
+    int count = std::min<int>(room, from.size());
+    std::copy_n(from.begin(), count, entries);
+    from.erase(from.begin(), from.begin() + count);
+    return count;
+}
 
 } // namespace lathe
 

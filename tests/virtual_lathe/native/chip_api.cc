@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The C functions for the chip alone: memory, resets, instruments.
 
+#include "adc.hh"
 #include "chip.hh"
 #include "nonvolatile.hh"
 #include "pins.hh"
@@ -93,6 +94,7 @@ int vl_load(const char *path)
     if (chip().cpu || !chip().load(path))
         return -1;
     lathe::pins().attach();
+    lathe::adc().attach();
     return 0;
 }
 

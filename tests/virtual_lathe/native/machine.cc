@@ -276,14 +276,6 @@ bool is_axis(int axis)
     return axis == VL_X || axis == VL_Z;
 }
 
-template <typename T> int take(std::vector<T> &from, T *entries, int room)
-{
-    int count = std::min<int>(room, from.size());
-    std::copy_n(from.begin(), count, entries);
-    from.erase(from.begin(), from.begin() + count);
-    return count;
-}
-
 } // namespace
 
 void vl_machine_attach(void)
@@ -340,10 +332,10 @@ void vl_switch_quality(unsigned bounce_us, unsigned noise_hz, unsigned seed)
 
 int vl_moves(struct vl_move *entries, int room)
 {
-    return take(machine().moves, entries, room);
+    return lathe::take(machine().moves, entries, room);
 }
 
 int vl_faults(struct vl_fault *entries, int room)
 {
-    return take(machine().faults, entries, room);
+    return lathe::take(machine().faults, entries, room);
 }

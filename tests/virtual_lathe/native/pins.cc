@@ -121,6 +121,16 @@ bool Pins::exists(int pin) const
     return pin >= 0 && pin < PIN_COUNT && probes[pin];
 }
 
+double Pins::volts(int pin) const
+{
+    return probes[pin]->get_nodeVoltage();
+}
+
+double Pins::source_ohm(int pin) const
+{
+    return probes[pin]->get_Zth();
+}
+
 void Pins::note(int pin, bool level)
 {
     uint64_t bit = uint64_t{1} << pin;

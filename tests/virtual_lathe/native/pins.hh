@@ -33,6 +33,9 @@ public:
     {
         return levels_ >> pin & 1;
     }
+    // Voltage of the pin, and what it is driven through from outside.
+    double volts(int pin) const;
+    double source_ohm(int pin) const;
     uint64_t levels() const
     {
         return levels_;

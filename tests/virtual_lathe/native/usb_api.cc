@@ -106,11 +106,7 @@ void vl_usb_counts(struct vl_usb_counts *counts)
 
 int vl_usb_mistake(unsigned index, char *text, unsigned room)
 {
-    const auto &list = usb_engine().mistakes;
-    if (index >= list.size())
-        return -1;
-    snprintf(text, room, "%s", list[index].c_str());
-    return 0;
+    return usb_engine().mistakes.copy(index, text, room);
 }
 
 void vl_usb_report_mistake(const char *text)

@@ -8,7 +8,7 @@
 #ifndef VIRTUAL_LATHE_USB_ENGINE_HH
 #define VIRTUAL_LATHE_USB_ENGINE_HH
 
-#include "chip.hh"
+#include "mistakes.hh"
 
 namespace lathe
 {
@@ -58,7 +58,7 @@ public:
     void ram_written(unsigned address, unsigned old_value, unsigned value);
     void reset();
     void mistake(const std::string &text);
-    std::vector<std::string> mistakes;
+    Mistakes mistakes;
 
 private:
     struct Descriptor {

@@ -4,10 +4,7 @@
 #ifndef VIRTUAL_LATHE_USB_REGISTERS_HH
 #define VIRTUAL_LATHE_USB_REGISTERS_HH
 
-#include "chip.hh"
-
-#include <cstdarg>
-#include <cstdio>
+#include "mistakes.hh"
 
 namespace lathe
 {
@@ -55,19 +52,6 @@ constexpr size_t STATUS_FIFO_DEPTH = 4;
 // Reading outside it gives 0, writing does nothing.
 unsigned ram(unsigned address);
 void set_ram(unsigned address, unsigned value);
-
-inline std::string text(const char *format, ...)
-    __attribute__((format(printf, 1, 2)));
-
-inline std::string text(const char *format, ...)
-{
-    char buffer[160];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(buffer, sizeof buffer, format, arguments);
-    va_end(arguments);
-    return buffer;
-}
 
 } // namespace lathe
 

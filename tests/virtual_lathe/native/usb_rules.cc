@@ -13,7 +13,6 @@ namespace lathe
 namespace
 {
 
-constexpr size_t MISTAKES_MAX = 200;
 // USB 2.0, section 9.2.6.3: the new address holds 2 ms after the status stage.
 constexpr uint64_t ADDRESS_CYCLES = 2 * CYCLES_PER_MS;
 // Erasing and writing a block of flash stops the core for some 4 ms; a
@@ -24,11 +23,7 @@ constexpr uint64_t PATIENCE_CYCLES = 20 * CYCLES_PER_MS;
 
 void UsbEngine::mistake(const std::string &what)
 {
-    if (mistakes.size() < MISTAKES_MAX)
-        mistakes.push_back(text("cycle %llu, address 0x%04x: ",
-                                (unsigned long long)chip().now(),
-                                chip().cpu->pc->value * 2) +
-                           what);
+    mistakes.add(what);
 }
 
 // ---- endpoints --------------------------------------------------------------

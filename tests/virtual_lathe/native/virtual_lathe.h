@@ -247,6 +247,45 @@ struct vl_fault {
 };
 int vl_faults(struct vl_fault *entries, int room);
 
+/* ---- Panel: lcd.cc, lcd_bus.cc, keys.cc; converter: adc.cc --------------- */
+
+/* An HD44780 display of two lines of 16 on RA2..RA5 (D4..D7), RE0 (RS) and
+ * RE1 (E).  The frequency of its own clock decides how long it is busy: 190
+ * to 350 kHz by the data sheet, 270 typically.  Power comes to it now, and
+ * again with each power-on reset of the chip; other resets leave it alone. */
+void vl_lcd_attach(double oscillator_khz);
+struct vl_lcd_state {
+    uint8_t ddram[80]; /* character codes, 40 of the first line first */
+    uint8_t cgram[64]; /* eight rows of 5 dots to a custom character */
+    uint8_t on;        /* the display shows something */
+    uint8_t two_lines; /* the function set has said so */
+    uint8_t cursor;    /* a line under the character at the address */
+    uint8_t blink;     /* that character blinks */
+    uint8_t in_cgram;  /* data go to CGRAM */
+    int32_t address;   /* 0..79: where data go in DDRAM */
+    int32_t shift;     /* 0..39: column of DDRAM shown leftmost */
+    uint64_t writes;   /* bytes taken since power came */
+};
+void vl_lcd_read(struct vl_lcd_state *state);
+/* Every byte, with the cycle of the fall of E that completed it.  Hands out
+ * the oldest entries, of at most 65,536, and forgets them. */
+struct vl_lcd_byte {
+    uint64_t cycle;
+    uint8_t data; /* 0: an instruction */
+    uint8_t value;
+};
+int vl_lcd_bytes(struct vl_lcd_byte *entries, int room);
+/* Text of the n-th mistake of the firmware; -1 when there are fewer. */
+int vl_lcd_mistake(unsigned index, char *text, unsigned room);
+
+/* The ladder of eight keys on RA0, with its capacitor. */
+void vl_keys_attach(void);
+/* Bit k: a finger is on key k.  Contacts bounce by vl_switch_quality(). */
+void vl_keys_hold(unsigned held);
+
+/* Mistakes in the use of the A/D converter, panel or not. */
+int vl_adc_mistake(unsigned index, char *text, unsigned room);
+
 /* ---- Metal: metal.cc, reach.cc ------------------------------------------- */
 
 /* A bar that a tool cuts, in part coordinates: x a radius, z = 0 the front of

@@ -16,6 +16,7 @@
 
         global  __mulint, __mullong, __divuint, __moduint, __divulong
         global  _factor_1, _factor_2, _divisor, _product, _proportion
+        global  _proportion_digit
 
 arithmetic_data udata_acs
 _factor_1
@@ -79,6 +80,16 @@ _proportion:
         movff   _divisor, second
         movff   _divisor + 1, second + 1
         bra     divide
+; Last decimal digit of its 32 bits, which are divided by ten.
+_proportion_digit:
+        movlw   10
+        movwf   second, A
+        clrf    second + 1, A
+        clrf    second + 2, A
+        clrf    second + 3, A
+        rcall   divide
+        movf    remainder, W, A
+        return
 
 __mullong:
         arguments 4

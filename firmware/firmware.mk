@@ -19,13 +19,14 @@ BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/buttons.c lathe/homing.c \
   lathe/passes.c lathe/places.c lathe/progress.c lathe/cuts.c lathe/manual.c \
   lathe/part_check.c lathe/part_values.c lathe/shape_check.c lathe/stroke.c \
   reset.c link/commands.c link/lengths.c motion/set_up.c panel/led.c \
-  store/eeprom_write.c store/parts.c store/settings.c)
+  store/eeprom_write.c store/parts.c store/settings.c panel/by_hand.c panel/keys.c panel/menu.c panel/panel.c \
+  panel/screen.c)
 BYTE_I := $(BYTE_C:firmware/%.c=$(OBJECTS)/%.i)
 FIRMWARE_C := $(filter-out $(BYTE_C),$(wildcard firmware/*.c firmware/*/*.c))
 FIRMWARE_ASM := $(wildcard firmware/*.asm firmware/*/*.asm)
 FIRMWARE_H := $(wildcard firmware/*.h firmware/*/*.h)
 FIRMWARE_INC := $(wildcard firmware/*/*.inc)
-ASM_INCLUDES := -I firmware/bytecode -I firmware/loader
+ASM_INCLUDES := -I firmware/bytecode -I firmware/loader -I firmware/panel
 COMPILED := $(FIRMWARE_C:firmware/%.c=$(OBJECTS)/%.asm)
 FIRMWARE_O := $(patsubst firmware/%.asm,$(OBJECTS)/%.o, \
   $(filter-out firmware/startup.asm,$(FIRMWARE_ASM))) \

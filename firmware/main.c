@@ -11,7 +11,9 @@
 #include "motion/ramp.h"   /* speed */
 #include "motion/stream.h" /* step timer */
 #include "panel/inputs.h"  /* buttons */
+#include "panel/lcd.h"     /* display */
 #include "panel/led.h"     /* status LED */
+#include "panel/panel.h"   /* menus */
 #include "sfr.h"           /* registers */
 #include "store/parts.h"   /* part store */
 #include "tick.h"          /* 1 ms */
@@ -36,7 +38,7 @@
 /* clang-format on */
 
 /* One page, as SDCC's small stack model needs. */
-#pragma stack 0x700 192
+#pragma stack 0x700 128
 
 #define ADCON1_DIGITAL 0x0F
 #define CMCON_OFF 0x07
@@ -100,6 +102,12 @@ static void serve(void)
 
     if (now != served) {
         served = now;
+        if (!(now & 1)) {
+            lcd_poll();
+            if (now & 2) {
+                panel_poll();
+            }
+        }
         if (!(now & 3) || guard_tripped || inputs_state != seen) {
             seen = inputs_state;
             machine_poll();

@@ -556,7 +556,9 @@
 #define SETTING_HOME_PHASE_Z                31
 #define SETTING_DEAD_JUMP                   32
 #define SETTING_DRIFT_MAX                   33
-#define SETTING_COUNT                       34
+#define SETTING_PANEL                       34
+#define SETTING_PANEL_INCH                  35
+#define SETTING_COUNT                       36
 
 /* SETTINGS(X): X(id, name, default, min, max) for each, in order of id. */
 #define SETTINGS(X)                                                          \
@@ -593,6 +595,8 @@
     X(30, HOME_PHASE_X, (-1), (-1), 7)                                       \
     X(31, HOME_PHASE_Z, (-1), (-1), 7)                                       \
     X(32, DEAD_JUMP, 5, 0, 1000)                                             \
-    X(33, DRIFT_MAX, 1, 0, 50)
+    X(33, DRIFT_MAX, 1, 0, 50)                                               \
+    X(34, PANEL, 0, 0, 2)                                                    \
+    X(35, PANEL_INCH, 0, 0, 1)
 
 #endif

@@ -296,6 +296,8 @@ class SettingId(IntEnum):
     HOME_PHASE_Z = 31
     DEAD_JUMP = 32
     DRIFT_MAX = 33
+    PANEL = 34
+    PANEL_INCH = 35
 
 
 #: Request payloads; UPLOAD_DATA is followed by its bytes.
@@ -574,4 +576,6 @@ SETTINGS = (
     Setting(SettingId.HOME_PHASE_Z, -1, -1, 7, "", "coil phase where switch Z opens; -1 none"),
     Setting(SettingId.DEAD_JUMP, 5, 0, 1000, "steps", "change of the dead steps that is reported"),
     Setting(SettingId.DRIFT_MAX, 1, 0, 50, "steps", "most that a home position may have moved"),
+    Setting(SettingId.PANEL, 0, 0, 2, "", "display and keys: 0 none, 1 English, 2 Spanish"),
+    Setting(SettingId.PANEL_INCH, 0, 0, 1, "", "1: the panel shows inches, 0: millimetres"),
 )

@@ -1,0 +1,112 @@
+/* Texts and numbers on the display.
+   SPDX-License-Identifier: Apache-2.0 */
+
+#include "panel/screen.h"
+#include "arithmetic.h"     /* proportions */
+#include "link/protocol.h"  /* axes, settings */
+#include "motion/path.h"    /* step queue */
+#include "motion/stream.h"  /* positions */
+#include "panel/lcd.h"      /* panel_screen */
+#include "panel/text.h"     /* texts */
+#include "store/settings.h" /* part zero, units */
+
+#define DECIMALS 3
+#define UM_NM 1000u   /* a thousandth of a millimetre */
+#define MIL_NM 25400u /* of an inch */
+#define PLACE_Z 25    /* of its letter */
+
+uint8_t screen_negative;
+uint8_t screen_point;
+
+static uint8_t line_end(uint8_t at)
+{
+    return at < LINE_2 ? LINE_1_END : LINE_2_END;
+}
+
+void screen_text(uint8_t at, uint8_t number)
+{
+    path_keep_up();
+    text_number = number;
+    text_at = at;
+    text_room = line_end(at) + 1 - at;
+    text_show();
+}
+
+void screen_clear(uint8_t at)
+{
+    uint8_t end = line_end(at);
+
+    while (at <= end) {
+        panel_screen[at] = ' ';
+        at++;
+    }
+}
+
+void screen_number(uint8_t from, uint8_t to)
+{
+    uint8_t digits = 0;
+
+    do {
+        if (screen_point && digits == DECIMALS) {
+            panel_screen[to] = '.';
+            to--;
+        }
+        panel_screen[to] = proportion_digit() + '0';
+        to--;
+        digits++;
+    } while (to >= from &&
+             (factor_1 != 0 || (screen_point && digits <= DECIMALS)));
+    if (screen_negative && to >= from) {
+        screen_negative = 0;
+        panel_screen[to] = '-';
+        to--;
+    }
+    if (screen_negative || factor_1 != 0) {
+        panel_screen[from] = '*';
+    }
+    while (to >= from) {
+        panel_screen[to] = ' ';
+        to--;
+    }
+    screen_negative = 0;
+    screen_point = 0;
+}
+
+void screen_whole(uint8_t from, uint8_t to, uint16_t value)
+{
+    path_keep_up();
+    factor_1 = value;
+    factor_2 = 1;
+    divisor = 1;
+    (void)proportion();
+    screen_number(from, to);
+}
+
+uint16_t screen_unit(void)
+{
+    return settings[SETTING_PANEL_INCH] ? MIL_NM : UM_NM;
+}
+
+void screen_position(uint8_t axis)
+{
+    int16_t steps;
+
+    path_keep_up();
+    steps = stream_position(axis) - settings[SETTING_ZERO_X + axis];
+    if (steps < 0) {
+        screen_negative = 1;
+        steps = -steps;
+    }
+    screen_point = 1;
+    factor_1 = axis == AXIS_X ? (uint16_t)steps * 2 : (uint16_t)steps;
+    factor_2 = settings[SETTING_STEP_X_NM + axis];
+    divisor = screen_unit();
+    (void)proportion();
+    if (axis == AXIS_X) {
+        panel_screen[LINE_2] = 'X';
+        screen_number(LINE_2 + 1, PLACE_Z - 1);
+    } else {
+        panel_screen[PLACE_Z] = 'Z';
+        screen_number(PLACE_Z + 1, LINE_2_END);
+    }
+}

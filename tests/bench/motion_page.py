@@ -60,6 +60,11 @@ def motion_rows(found: dict[str, Any]) -> list[Row]:
             "7 to 11 us peak to peak",
         ),
         (
+            "the same with the panel in use, a key pressed every 0.12 s",
+            f"{found['jitter_max_us_panel']:.2f} us",
+            "",
+        ),
+        (
             "steps at full speed after a hold is noticed",
             f"{found['hold_latency_steps']} (500 to 5,000 steps/s)",
             "79 to 99 ms late",

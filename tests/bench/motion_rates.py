@@ -17,6 +17,7 @@ from motion.trace import judge_all
 from tornillo.frames import Frame, encode
 from tornillo.protocol import Command, State
 from virtual_lathe.chip import CYCLES_PER_SECOND
+from virtual_lathe.panel import KEYS, Panel
 from virtual_lathe.worker import in_new_process
 
 STATUS_HZ = 20
@@ -33,6 +34,9 @@ SETTLED = 0.01
 CYCLES_PER_US = 12
 JITTER_RATE = 5_000
 SLICE_CYCLES = 12_000
+# The panel: its setting by number, the time it takes to start, and how long a key is down and up.
+PANEL, ENGLISH, PANEL_STARTED_S = 34, 1, 0.7
+KEY_SLICES = 60
 
 
 class Poller:
@@ -116,7 +120,29 @@ def highest(rig: Rig, chain_of: Callable[[float], Sequence[Segment]]) -> tuple[f
     return best
 
 
-def worst_lateness(rig: Rig, chain: Sequence[Segment]) -> tuple[float, int]:
+class Fingers:
+    """Somebody who presses all keys of the panel, one after the other."""
+
+    def __init__(self, rig: Rig) -> None:
+        """Fit a panel and let its display start."""
+        self.panel = Panel(rig.chip, rig.run)
+        rig.chip.poke(rig.symbols.ram("settings") + 2 * PANEL, ENGLISH)
+        rig.run(PANEL_STARTED_S)
+        self.slices = 0
+
+    def move(self) -> None:
+        """Called once a millisecond."""
+        self.slices += 1
+        key, phase = divmod(self.slices, 2 * KEY_SLICES)
+        if phase == 0:
+            self.panel.hold(KEYS[key % len(KEYS)])
+        elif phase == KEY_SLICES:
+            self.panel.release()
+
+
+def worst_lateness(
+    rig: Rig, chain: Sequence[Segment], fingers: Fingers | None = None
+) -> tuple[float, int]:
     """Run a chain with busy USB and compare each step with the time computed for it.
 
     The computed time is the compare value that raised the step interrupt; the real one is when
@@ -135,6 +161,8 @@ def worst_lateness(rig: Rig, chain: Sequence[Segment]) -> tuple[float, int]:
     while rig.state not in (State.IDLE, State.ALARM):
         if chip.cycle >= slice_end:
             poller.poll()
+            if fingers is not None:
+                fingers.move()
             slice_end = chip.cycle + SLICE_CYCLES
         chip.run_to(slice_end)
         if chip.pc == HIGH_VECTOR:
@@ -174,6 +202,18 @@ def _measure() -> dict[str, Any]:
     }
 
 
+def _measure_panel() -> dict[str, Any]:
+    rig = Rig(usb=True)
+    hello(rig)
+    fingers = Fingers(rig)
+    rig.quick(JITTER_RATE)
+    chains = [[Line(-4_000, 2_900, JITTER_RATE)], arc_chain(JITTER_RATE, 1)]
+    jitters = [worst_lateness(rig, chain, fingers) for chain in chains]
+    if fingers.panel.mistakes or not fingers.panel.lines()[0].strip():
+        raise MotionFault("the panel was not in use")
+    return {"jitter_max_us_panel": max(jitter for jitter, _ in jitters)}
+
+
 def rates() -> dict[str, Any]:
     """Measure rates, exactness in time and the cost of the step interrupt."""
-    return in_new_process(_measure)
+    return in_new_process(_measure) | in_new_process(_measure_panel)

@@ -17,6 +17,7 @@ FOUND: dict[str, Any] = {
     "arc_max_rate_hz": 46_319,
     "arc_max_path_rate": 51_387,
     "jitter_max_us": 1 / 12,
+    "jitter_max_us_panel": 1 / 12,
     "hold_latency_steps": 1,
     "hold_trials": 1_000,
     "hold_steps_lost": 0,

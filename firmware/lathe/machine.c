@@ -269,6 +269,18 @@ uint8_t machine_zero(uint8_t axis, int16_t value)
                         zero - value);
 }
 
+uint8_t machine_set(uint8_t id, int16_t value)
+{
+    uint8_t error;
+
+    if (!machine_quiet()) {
+        return ERROR_BUSY;
+    }
+    error = settings_set(id, value);
+    machine_apply_settings();
+    return error;
+}
+
 uint8_t machine_running(void)
 {
     return machine_state == STATE_RUNNING || machine_state == STATE_HOLD ||

@@ -65,6 +65,9 @@ uint8_t machine_quiet(void);
 /* The tool stands at this part coordinate: moves and stores part zero. */
 uint8_t machine_zero(uint8_t axis, int16_t value);
 
+/* Changes a setting, stores all, and takes them into use. */
+uint8_t machine_set(uint8_t id, int16_t value);
+
 /* Takes settings that motion depends on into use. */
 void machine_apply_settings(void);
 

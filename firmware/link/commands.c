@@ -287,8 +287,6 @@ static uint8_t serial_set(void)
 /* Commands that write flash or EEPROM; only while nothing moves. */
 static uint8_t change_store(void)
 {
-    uint8_t error;
-
     if (!machine_quiet()) {
         return ERROR_BUSY;
     }
@@ -313,10 +311,8 @@ static uint8_t change_store(void)
         commands_leaving = LEAVING_TURNS;
         return ERROR_OK;
     default: /* COMMAND_SETTING_SET */
-        error = settings_set(frame_payload[SETTING_SET_ID_AT],
-                             get_i16(SETTING_SET_VALUE_AT));
-        machine_apply_settings();
-        return error;
+        return machine_set(frame_payload[SETTING_SET_ID_AT],
+                           get_i16(SETTING_SET_VALUE_AT));
     }
 }
 

@@ -101,7 +101,9 @@ def assembly(panel: Panel) -> str:
         "",
         "text_groups:                            ; where every eighth text begins",
     ]
-    lines += [f"        db      LOW(text_bits + {at}), HIGH(text_bits + {at})" for at in code.groups]
+    lines += [
+        f"        db      LOW(text_bits + {at}), HIGH(text_bits + {at})" for at in code.groups
+    ]
     lines += ["text_counts:                            ; letters with 1, 2, ... bits"]
     lines += bytes_of(code.counts)
     lines += ["text_letters:                           ; in the order of their codes"]

@@ -48,18 +48,6 @@ static uint16_t stored(void)
                                    : (uint16_t)settings[withs[entry]];
 }
 
-static uint8_t set(uint8_t id, int16_t value)
-{
-    uint8_t error;
-
-    if (!machine_quiet()) {
-        return ERROR_BUSY;
-    }
-    error = settings_set(id, value);
-    machine_apply_settings();
-    return error;
-}
-
 static uint8_t change(uint8_t key)
 {
     switch (key) {
@@ -80,7 +68,7 @@ static uint8_t change(uint8_t key)
     case KEY_OK:
         step = 0;
         if (kind() == KIND_SETTING) {
-            return set(withs[entry], (int16_t)number);
+            return machine_set(withs[entry], (int16_t)number);
         }
         by_hand_diameter = number;
         break;
@@ -124,7 +112,7 @@ static uint8_t act(void)
         by_hand_speed = (by_hand_speed + 1) % SPEEDS;
         break;
     case KIND_LANGUAGE:
-        return set(SETTING_PANEL, 3 - settings[SETTING_PANEL]);
+        return machine_set(SETTING_PANEL, 3 - settings[SETTING_PANEL]);
     case KIND_DEAD:
         break;
     default:
@@ -210,8 +198,9 @@ static void show_part(void)
         return;
     }
     parts_read_name(slot);
-    for (i = 0; i < NAME_LENGTH; i++) {
-        panel_screen[LINE_2 + i] = parts_name[i] != 0 ? parts_name[i] : ' ';
+    screen_clear(LINE_2);
+    for (i = 0; i < NAME_LENGTH && parts_name[i] != 0; i++) {
+        panel_screen[LINE_2 + i] = parts_name[i];
     }
 }
 
@@ -258,14 +247,14 @@ void menu_show_value(uint8_t part)
         show_choice(by_hand_speed == 0, TEXT_RAPID, by_hand_rate());
     } else if (what == KIND_LANGUAGE) {
         screen_text(LINE_2, TEXT_LANGUAGE);
-    } else if (what == KIND_MENU) {
-        screen_clear(LINE_2);
-    } else if (step != 0) {
-        screen_point = kind() == KIND_DIAMETER;
-        screen_whole(LINE_2, LINE_2 + 6, step);
-        show_number(number);
     } else {
         screen_clear(LINE_2);
-        show_number(stored());
+        if (step != 0) {
+            screen_point = what == KIND_DIAMETER;
+            screen_whole(LINE_2, LINE_2 + 6, step);
+            show_number(number);
+        } else if (what != KIND_MENU) {
+            show_number(stored());
+        }
     }
 }

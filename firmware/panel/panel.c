@@ -134,7 +134,6 @@ static void show_left(void)
     uint16_t seconds = left % 60;
 
     if (left == 0) {
-        screen_clear(LINE_1 + TIME_AT);
         return;
     }
     screen_whole(LINE_1 + TIME_AT, LINE_1 + TIME_AT + 1, left / 60);
@@ -172,18 +171,16 @@ static uint8_t show_short(uint8_t at, uint8_t value)
 
 static void show_run(void)
 {
-    uint8_t at = show_short(LINE_1, passes_operation());
+    uint8_t at;
 
+    screen_clear(LINE_1);
+    at = show_short(LINE_1, passes_operation());
     panel_screen[at] = '/';
     at = show_short(at + 1, part_operations);
-    panel_screen[at] = ' ';
     at = show_short(at + 1, passes_pass());
     panel_screen[at] = '/';
-    at = show_short(at + 1, passes_passes());
-    while (at < LINE_1 + TIME_AT) {
-        panel_screen[at] = ' ';
-        at++;
-    }
+    show_short(at + 1, passes_passes());
+    show_status();
 }
 
 /* Message or tool of the record that the part waits at; 16 of its characters
@@ -192,7 +189,7 @@ static uint8_t show_message(void)
 {
     uint8_t i;
     uint8_t offset = 0;
-    uint8_t character = 0;
+    uint8_t character;
     uint8_t room = (uint8_t)(part_size - OPERATION_PAUSE_MESSAGE_AT);
 
     if (part_type == OPERATION_TOOL) {
@@ -204,12 +201,12 @@ static uint8_t show_message(void)
     }
     parts_open(machine_slot);
     parts_seek(part_record + OPERATION_PAUSE_MESSAGE_AT + offset);
-    for (i = 0; i < LCD_COLUMNS; i++) {
-        character = ' ';
-        if (offset + i < room) {
-            character = flash_read();
+    screen_clear(LINE_2);
+    for (i = 0; i < LCD_COLUMNS && offset + i < room; i++) {
+        character = flash_read();
+        if (character != 0) {
+            panel_screen[LINE_2 + i] = character;
         }
-        panel_screen[LINE_2 + i] = character != 0 ? character : ' ';
     }
     return 1;
 }
@@ -281,11 +278,6 @@ void panel_poll(void)
         break;
     case 1 * TURN:
         first_line();
-        break;
-    case 3 * TURN:
-        if (machine_running()) {
-            show_status();
-        }
         break;
     case 5 * TURN:
         second_line(0);

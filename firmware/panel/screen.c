@@ -6,6 +6,7 @@
 #include "link/protocol.h"  /* axes, settings */
 #include "motion/path.h"    /* step queue */
 #include "motion/stream.h"  /* positions */
+#include "panel/menus.h"    /* the empty text */
 #include "panel/lcd.h"      /* panel_screen */
 #include "panel/text.h"     /* texts */
 #include "store/settings.h" /* part zero, units */
@@ -18,28 +19,18 @@
 uint8_t screen_negative;
 uint8_t screen_point;
 
-static uint8_t line_end(uint8_t at)
-{
-    return at < LINE_2 ? LINE_1_END : LINE_2_END;
-}
-
 void screen_text(uint8_t at, uint8_t number)
 {
     path_keep_up();
     text_number = number;
     text_at = at;
-    text_room = line_end(at) + 1 - at;
+    text_room = (at < LINE_2 ? LINE_1_END : LINE_2_END) + 1 - at;
     text_show();
 }
 
 void screen_clear(uint8_t at)
 {
-    uint8_t end = line_end(at);
-
-    while (at <= end) {
-        panel_screen[at] = ' ';
-        at++;
-    }
+    screen_text(at, TEXT_ALARM + ALARM_NONE);
 }
 
 void screen_number(uint8_t from, uint8_t to)

@@ -207,8 +207,10 @@ def _measure_panel() -> dict[str, Any]:
     hello(rig)
     fingers = Fingers(rig)
     rig.quick(JITTER_RATE)
-    chains = [[Line(-4_000, 2_900, JITTER_RATE)], arc_chain(JITTER_RATE, 1)]
-    jitters = [worst_lateness(rig, chain, fingers) for chain in chains]
+    jitters = [
+        worst_lateness(rig, [Line(-4_000, 2_900, JITTER_RATE)], fingers),
+        worst_lateness(rig, arc_chain(JITTER_RATE, 1), fingers),
+    ]
     if fingers.panel.mistakes or not fingers.panel.lines()[0].strip():
         raise MotionFault("the panel was not in use")
     return {"jitter_max_us_panel": max(jitter for jitter, _ in jitters)}

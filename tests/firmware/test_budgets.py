@@ -14,7 +14,7 @@ from tornillo.protocol import PART_SLOTS, PART_UNIT, State
 
 SIZE_FILE = Path(__file__).parents[2] / "build" / "firmware" / "size.json"
 STORE_BEGIN, FLASH_SIZE = 0x7400, 0x8000
-STACK_FIRST, STACK_LAST = 0x700, 0x7BF
+STACK_FIRST, STACK_LAST = 0x700, 0x77F
 FSR1L, FSR1H = 0xFE1, 0xFE2
 
 
@@ -26,7 +26,7 @@ def size() -> dict[str, int]:
 
 
 def test_the_budgets_hold(size: dict[str, int]) -> None:
-    assert size["ram_static_bytes"] + size["sw_stack_worst_bytes"] <= 2048 * 90 // 100
+    assert size["ram_static_bytes"] + size["sw_stack_worst_bytes"] <= 2048 * 94 // 100
     assert size["hw_stack_worst_levels"] <= 20
 
 

@@ -41,7 +41,7 @@ mapfile -t assembly < <(tracked 'firmware/*.asm' 'firmware/*.inc' 'tests/*.asm')
 mapfile -t python < <(tracked '*.py')
 mapfile -t shell < <(tracked '*.sh' .ci/run)
 mapfile -t formatted < <(printf '%s\n' "${firmware_c[@]}" "${native[@]}" |
-    grep -vx firmware/link/protocol.h)
+    grep -vx -e firmware/link/protocol.h -e firmware/panel/menus.h)
 
 # --- C ------------------------------------------------------------------------
 # The words that only SDCC knows are defined away; a special function register
@@ -143,10 +143,12 @@ step "ruff check" "$venv/bin/ruff" check --quiet .
 step "ruff format" "$venv/bin/ruff" format --quiet --diff .
 step "mypy host-cli" in_host_cli "$venv/bin/mypy"
 step "mypy firmware and tests" "$venv/bin/mypy" firmware/toolchain firmware/link \
-    docs tests host-cli/make_catalogues.py
+    firmware/panel docs tests host-cli/make_catalogues.py
 step "mypy hw" "$venv/bin/mypy" --config-file hw/mypy.ini hw
 step "protocol files up to date" "$venv/bin/python" \
     firmware/link/generate_protocol.py --check
+step "menus of the panel up to date" "$venv/bin/python" \
+    firmware/panel/generate_menus.py --check
 step "documentation tables up to date" "$venv/bin/python" \
     docs/generate_tables.py --check
 step "documentation reference up to date" "$venv/bin/python" \

@@ -16,18 +16,25 @@ SHOWN_S = 0.2
 #: An answer stands for 1.5 s.
 ANSWER_S = 1.6
 STARTED_S = 0.7
+#: Settings have been stored, and the display has followed.
+STORED_S = 0.5
 
 
 class AtThePanel:
     """A lathe with a panel, just switched on, cable out."""
 
-    def __init__(self, *parts: Path, settings: dict[str, int] | None = None, **options: Any) -> None:
-        """Store settings and parts in it with a computer, then take that away."""
+    def __init__(
+        self, *parts: Path | bytes, settings: dict[str, int] | None = None, **options: Any
+    ) -> None:
+        """Store settings and parts (files or images) in it with a computer, then take that away."""
         self.bench = Bench(panel=True, **options)
         for name, value in {"panel": 1, **(settings or {})}.items():
             self.bench.host.set_setting(SettingId[name.upper()], value)
         for part in parts:
-            self.bench.host.upload(Part.load(part).image(self.bench.host.machine()))
+            machine = self.bench.host.machine()
+            self.bench.host.upload(
+                part if isinstance(part, bytes) else Part.load(part).image(machine)
+            )
         self.bench.power_cycle()
         self.bench.run(STARTED_S)
 

@@ -22,24 +22,23 @@
    steps. */
 #define DIAMETER_MAX_MIL 9999u
 
-uint8_t by_hand_size;
-uint8_t by_hand_speed;
+uint8_t by_hand_choice[2];
 uint16_t by_hand_diameter;
 
 static uint8_t jogging;  /* as long as the key is held */
 static uint8_t touching; /* begun here: axis + 1, else 0 */
 
-static __code const uint16_t rates[SPEEDS] = {0, 400, 100, 25};
-static __code const uint16_t distances[SIZES] = {10, 100, 1000, 0};
+static __code const uint16_t rates[CHOICES] = {0, 400, 100, 25};
+static __code const uint16_t distances[CHOICES] = {10, 100, 1000, 0};
 
 uint16_t by_hand_rate(void)
 {
-    return rates[by_hand_speed];
+    return rates[by_hand_choice[CHOICE_SPEED]];
 }
 
 uint16_t by_hand_distance(void)
 {
-    uint16_t distance = distances[by_hand_size];
+    uint16_t distance = distances[by_hand_choice[CHOICE_SIZE]];
 
     return settings[SETTING_PANEL_INCH] ? distance / 10 : distance;
 }
@@ -87,13 +86,13 @@ uint8_t by_hand_jog(uint8_t key)
     if (key == KEY_LEFT || key == KEY_RIGHT) {
         axis = AXIS_Z;
     }
-    if (by_hand_size != CONTINUOUS) {
+    if (by_hand_choice[CHOICE_SIZE] != CONTINUOUS) {
         way = (int16_t)steps(by_hand_distance(), axis);
     }
     if (key == KEY_DOWN || key == KEY_LEFT || key == KEY_X_IN) {
         way = -way;
     }
-    jogging = by_hand_size == CONTINUOUS;
+    jogging = by_hand_choice[CHOICE_SIZE] == CONTINUOUS;
     return move(COMMAND_JOG, axis, way);
 }
 

@@ -16,17 +16,16 @@
 
 #include <stdint.h>
 
-/* How far a key moves a slide: 0, 1, 2 for 0.01, 0.1, 1 mm or 0.001, 0.01,
-   0.1 inch; then CONTINUOUS. */
+/* How a key moves a slide. The size is 0, 1, 2 for 0.01, 0.1, 1 mm or 0.001,
+   0.01, 0.1 inch, then CONTINUOUS; the speed the number of a rate. */
+#define CHOICE_SIZE 0
+#define CHOICE_SPEED 1
+#define CHOICES 4 /* of each */
 #define CONTINUOUS 3
-#define SIZES 4
-extern uint8_t by_hand_size;
+extern uint8_t by_hand_choice[2];
 
-/* How fast: number of a rate, 0 rapid. */
-#define SPEEDS 4
-extern uint8_t by_hand_speed;
-
-/* That rate in step/s, 0 rapid; the size in thousandths of the unit. */
+/* The rate in step/s, 0 rapid; the size in thousandths of the unit, 0
+   continuous. */
 uint16_t by_hand_rate(void);
 uint16_t by_hand_distance(void);
 

@@ -105,11 +105,8 @@ static uint8_t act(void)
         first = with;
         entry = with;
         break;
-    case KIND_SIZE:
-        by_hand_size = (by_hand_size + 1) % SIZES;
-        break;
-    case KIND_SPEED:
-        by_hand_speed = (by_hand_speed + 1) % SPEEDS;
+    case KIND_CHOICE:
+        by_hand_choice[with] = (by_hand_choice[with] + 1) % CHOICES;
         break;
     case KIND_LANGUAGE:
         return machine_set(SETTING_PANEL, 3 - settings[SETTING_PANEL]);
@@ -206,19 +203,23 @@ static void show_part(void)
 
 static void show_dead(uint8_t axis)
 {
-    uint8_t at = axis == AXIS_X ? LINE_2 : LINE_2 + 8;
+    uint8_t at = LINE_2 + LCD_COLUMNS / 2 * axis;
 
-    panel_screen[at] = axis == AXIS_X ? 'X' : 'Z';
+    panel_screen[at] = 'X' + ('Z' - 'X') * axis;
     screen_whole(at + 1, at + 4,
                  axis == AXIS_X ? motion_dead_x : motion_dead_z);
     screen_whole(at + 5, at + 7, homing_spread[axis]);
 }
 
-static void show_choice(uint8_t chosen, uint8_t text, uint16_t value)
+static void show_choice(uint8_t choice)
 {
-    if (chosen) {
-        screen_text(LINE_2, text);
+    uint16_t value =
+        choice == CHOICE_SIZE ? by_hand_distance() : by_hand_rate();
+
+    if (value == 0) {
+        screen_text(LINE_2, TEXT_CONTINUOUS + choice);
     } else {
+        screen_point = choice == CHOICE_SIZE;
         screen_whole(LINE_2, LINE_2_END, value);
     }
 }
@@ -239,12 +240,8 @@ void menu_show_value(uint8_t part)
         return;
     } else if (what <= KIND_PART) {
         show_part();
-    } else if (what == KIND_SIZE) {
-        screen_point = by_hand_size != CONTINUOUS;
-        show_choice(by_hand_size == CONTINUOUS, TEXT_CONTINUOUS,
-                    by_hand_distance());
-    } else if (what == KIND_SPEED) {
-        show_choice(by_hand_speed == 0, TEXT_RAPID, by_hand_rate());
+    } else if (what == KIND_CHOICE) {
+        show_choice(withs[entry]);
     } else if (what == KIND_LANGUAGE) {
         screen_text(LINE_2, TEXT_LANGUAGE);
     } else {

@@ -17,10 +17,9 @@
 #define KIND_MENU                7
 #define KIND_SETTING             8
 #define KIND_DIAMETER            9
-#define KIND_SIZE                10
-#define KIND_SPEED               11
-#define KIND_DEAD                12
-#define KIND_LANGUAGE            13
+#define KIND_CHOICE              10
+#define KIND_DEAD                11
+#define KIND_LANGUAGE            12
 #define MENU_LAST                0x80
 
 /* First text of each group. */
@@ -55,8 +54,8 @@
     X(KIND_TOUCH, 0)                                                         \
     X(KIND_TOUCH | MENU_LAST, 1)                                             \
     X(KIND_MOVE, 0)                                                          \
-    X(KIND_SIZE, 0)                                                          \
-    X(KIND_SPEED | MENU_LAST, 0)                                             \
+    X(KIND_CHOICE, 0)                                                        \
+    X(KIND_CHOICE | MENU_LAST, 1)                                            \
     X(KIND_LANGUAGE, 0)                                                      \
     X(KIND_SETTING, SETTING_PANEL_INCH)                                      \
     X(KIND_SETTING, SETTING_RAPID_RATE_X)                                    \

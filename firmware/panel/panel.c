@@ -55,14 +55,13 @@ static void show_answer(uint8_t text)
 
 static void run_key(uint8_t key)
 {
-    uint8_t percent = override;
+    uint8_t percent = override + OVERRIDE_STEP;
 
-    if (key == KEY_UP) {
-        percent += OVERRIDE_STEP;
-    } else if (key == KEY_DOWN) {
-        percent -= OVERRIDE_STEP;
-    } else {
+    if (key > KEY_DOWN) {
         return;
+    }
+    if (key == KEY_DOWN) {
+        percent -= 2 * OVERRIDE_STEP;
     }
     if (machine_override(percent) == ERROR_OK) {
         override = percent;

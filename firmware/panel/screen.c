@@ -81,6 +81,8 @@ uint16_t screen_unit(void)
 void screen_position(uint8_t axis)
 {
     int16_t steps;
+    uint8_t at = LINE_2;
+    uint8_t to = PLACE_Z - 1;
 
     path_keep_up();
     steps = stream_position(axis) - settings[SETTING_ZERO_X + axis];
@@ -88,16 +90,17 @@ void screen_position(uint8_t axis)
         screen_negative = 1;
         steps = -steps;
     }
-    screen_point = 1;
-    factor_1 = axis == AXIS_X ? (uint16_t)steps * 2 : (uint16_t)steps;
+    factor_1 = steps;
+    if (axis == AXIS_X) {
+        factor_1 *= 2; /* a diameter: up to 64,000 */
+    } else {
+        at = PLACE_Z;
+        to = LINE_2_END;
+    }
     factor_2 = settings[SETTING_STEP_X_NM + axis];
     divisor = screen_unit();
     (void)proportion();
-    if (axis == AXIS_X) {
-        panel_screen[LINE_2] = 'X';
-        screen_number(LINE_2 + 1, PLACE_Z - 1);
-    } else {
-        panel_screen[PLACE_Z] = 'Z';
-        screen_number(PLACE_Z + 1, LINE_2_END);
-    }
+    screen_point = 1;
+    panel_screen[at] = 'X' + ('Z' - 'X') * axis;
+    screen_number(at + 1, to);
 }

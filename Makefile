@@ -61,6 +61,7 @@ bench: firmware virtual-lathe-library ## measure, write build/bench/bench.json a
 .PHONY: docs
 docs: firmware virtual-lathe-library ## refresh what is generated in docs/, build build/site
 	@$(PYTHON) firmware/link/generate_protocol.py
+	@$(PYTHON) firmware/panel/generate_menus.py
 	@$(PYTHON) docs/generate_tables.py
 	@$(PYTHON) docs/generate_reference.py
 	@$(PYTHON) docs/generate_pictures.py

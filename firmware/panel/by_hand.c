@@ -25,7 +25,7 @@
 uint8_t by_hand_choice[2];
 uint16_t by_hand_diameter;
 
-static uint8_t jogging;  /* as long as the key is held */
+static uint8_t jogging;  /* as long as this key is held: number + 1, else 0 */
 static uint8_t touching; /* begun here: axis + 1, else 0 */
 
 static __code const uint16_t rates[CHOICES] = {0, 400, 100, 25};
@@ -88,11 +88,12 @@ uint8_t by_hand_jog(uint8_t key)
     }
     if (by_hand_choice[CHOICE_SIZE] != CONTINUOUS) {
         way = (int16_t)steps(by_hand_distance(), axis);
+    } else if (jogging == 0) {
+        jogging = key + 1;
     }
     if (key == KEY_DOWN || key == KEY_LEFT || key == KEY_X_IN) {
         way = -way;
     }
-    jogging = by_hand_choice[CHOICE_SIZE] == CONTINUOUS;
     return move(COMMAND_JOG, axis, way);
 }
 
@@ -131,7 +132,7 @@ uint8_t by_hand_poll(void)
     uint8_t axis;
     uint8_t error;
 
-    if (jogging && keys_down == KEY_NONE) {
+    if (jogging != 0 && keys_down != jogging - 1) {
         jogging = 0;
         machine_hold();
     }

@@ -62,8 +62,12 @@ def header(panel: Panel) -> str:
         rows.append(f"    X({kind}, {with_})")
     lines += ["", "/* MENU_ENTRIES(X): X(kind, with) for each entry, its text is its number. */"]
     lines += macro("MENU_ENTRIES(X)", rows)
-    ways = [f"    X({way})" for way in panel.way_numbers()]
-    lines += ["", "/* ALARM_WAYS(X): X(way) for each alarm by number, from TEXT_WAY. */"]
+    ways = [
+        f"    X({way}{' | WAY_AXIS' if number in panel.with_axis() else ''})"
+        for number, way in enumerate(panel.way_numbers())
+    ]
+    lines += ["", "/* ALARM_WAYS(X): X(way) for each alarm by number, from TEXT_WAY; with a bit"]
+    lines += [" * where it concerns an axis. */", define("WAY_AXIS", f"0x{LAST:02X}")]
     lines += macro("ALARM_WAYS(X)", ways)
     return "\n".join([*lines, "", "#endif", ""])
 

@@ -231,11 +231,7 @@ void menu_show_value(uint8_t part)
     if (what == KIND_DEAD) {
         show_dead(part);
     } else if (what <= KIND_GO_ZERO) {
-        if (machine_homed) {
-            screen_position(part);
-        } else {
-            screen_text(LINE_2, TEXT_NOT_HOMED);
-        }
+        screen_position(part);
     } else if (part != 0) {
         return;
     } else if (what <= KIND_PART) {

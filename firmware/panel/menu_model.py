@@ -12,6 +12,8 @@ HERE = Path(__file__).resolve().parent
 MENUS = HERE / "menus.toml"
 PROTOCOL = HERE.parent / "link" / "protocol.toml"
 COLUMNS = 16
+#: At the end of an alarm's text: its axis stands in the last column.
+AXIS = " {axis}"
 LANGUAGES = ("English", "Spanish")
 #: Tables of menus.toml that are no menu.
 NO_MENU = ("kind", "text", "state", "letter")
@@ -52,7 +54,10 @@ class Panel:
 
     def numbered(self, table: str) -> list[Text]:
         """Texts of a table of protocol.toml by the number of the thing, none where it has none."""
-        rows = {row["value"]: tuple(row.get("panel", NONE)) for row in self.raw[table].values()}
+        rows = {
+            row["value"]: tuple(text.removesuffix(AXIS) for text in row.get("panel", NONE))
+            for row in self.raw[table].values()
+        }
         return [rows.get(number, NONE) for number in range(max(rows) + 1)]
 
     def by_state(self) -> list[Text]:
@@ -62,6 +67,11 @@ class Panel:
     def ways(self) -> list[Text]:
         """Ways out of an alarm, in their order."""
         return [tuple(text) for text in self.raw["panel_way"].values()]
+
+    def with_axis(self) -> set[int]:
+        """Numbers of the alarms that show their axis."""
+        rows = self.raw["alarm"].values()
+        return {row["value"] for row in rows if row.get("panel", NONE)[0].endswith(AXIS)}
 
     def way_numbers(self) -> list[int]:
         """Which way leads out of each alarm, 0 for numbers that are none."""
@@ -115,18 +125,26 @@ def _menu(rows: list[dict[str, Any]]) -> list[Entry]:
 
 
 def _judge(panel: Panel) -> None:
-    names = list(panel.menus)
     for menu, entries in panel.menus.items():
         for entry in entries:
-            if entry.kind not in panel.kinds:
-                raise ValueError(f"{entry.text[0]}: no such kind: {entry.kind}")
-            if entry.kind == "menu" and (menu != names[0] or entry.argument not in names[1:]):
-                raise ValueError(f"{entry.text[0]}: leads to no submenu: {entry.argument}")
-            if entry.kind == "setting" and entry.argument not in panel.raw["setting"]:
-                raise ValueError(f"{entry.text[0]}: no such setting: {entry.argument}")
+            _judge_entry(panel, menu, entry)
+    for number in panel.with_axis():
+        for shown in panel.numbered("alarm")[number]:
+            if len(shown) > COLUMNS - 2:
+                raise ValueError(f"alarm {number}: {shown!r} leaves no room for the axis")
     for group, texts in panel.all_texts().items():
         for text in texts:
             _judge_text(panel, group, text)
+
+
+def _judge_entry(panel: Panel, menu: str, entry: Entry) -> None:
+    main, *submenus = panel.menus
+    if entry.kind not in panel.kinds:
+        raise ValueError(f"{entry.text[0]}: no such kind: {entry.kind}")
+    if entry.kind == "menu" and (menu != main or entry.argument not in submenus):
+        raise ValueError(f"{entry.text[0]}: leads to no submenu: {entry.argument}")
+    if entry.kind == "setting" and entry.argument not in panel.raw["setting"]:
+        raise ValueError(f"{entry.text[0]}: no such setting: {entry.argument}")
 
 
 def _judge_text(panel: Panel, group: str, text: Text) -> None:

@@ -37,7 +37,13 @@ def alarms(panel: Panel) -> str:
     """Every alarm with its two lines."""
     ways = panel.raw["panel_way"]
     rows = [
-        (str(row["value"]), *(f"{row['panel'][n]} / {ways[row['panel_way']][n]}" for n in (0, 1)))
+        (
+            str(row["value"]),
+            *(
+                f"{text.format(axis='X')} / {way}"
+                for text, way in zip(row["panel"], ways[row["panel_way"]], strict=True)
+            ),
+        )
         for row in panel.raw["alarm"].values()
         if "panel" in row
     ]

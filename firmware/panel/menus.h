@@ -64,23 +64,25 @@
     X(KIND_SETTING, SETTING_IDLE_MS)                                         \
     X(KIND_SETTING | MENU_LAST, SETTING_PROBE_FITTED)
 
-/* ALARM_WAYS(X): X(way) for each alarm by number, from TEXT_WAY. */
+/* ALARM_WAYS(X): X(way) for each alarm by number, from TEXT_WAY; with a bit
+ * where it concerns an axis. */
+#define WAY_AXIS                 0x80
 #define ALARM_WAYS(X)                                                        \
     X(0)                                                                     \
-    X(3)                                                                     \
-    X(3)                                                                     \
-    X(1)                                                                     \
+    X(3 | WAY_AXIS)                                                          \
+    X(3 | WAY_AXIS)                                                          \
+    X(1 | WAY_AXIS)                                                          \
     X(2)                                                                     \
     X(0)                                                                     \
     X(3)                                                                     \
     X(5)                                                                     \
+    X(0 | WAY_AXIS)                                                          \
+    X(4 | WAY_AXIS)                                                          \
     X(0)                                                                     \
-    X(4)                                                                     \
     X(0)                                                                     \
-    X(0)                                                                     \
-    X(4)                                                                     \
-    X(0)                                                                     \
-    X(3)                                                                     \
+    X(4 | WAY_AXIS)                                                          \
+    X(0 | WAY_AXIS)                                                          \
+    X(3 | WAY_AXIS)                                                          \
     X(1)
 
 #endif

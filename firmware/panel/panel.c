@@ -31,8 +31,7 @@ static __code const uint8_t ways[] = {ALARM_WAYS(TAKE_WAY)};
 #define TURN 4 /* ms */
 
 #define OVERRIDE_STEP 10
-#define TIME_AT 11 /* places of the first line, from 0 */
-#define LETTER_AT 15
+#define TIME_AT 11 /* place in the first line, from 0 */
 
 #define PROGRESS_UNIT 4 /* permille */
 #define PROGRESS_DONE (PERMILLE_DONE / PROGRESS_UNIT)
@@ -213,8 +212,8 @@ static uint8_t show_message(void)
 static void show_alarm(void)
 {
     screen_text(LINE_1, TEXT_ALARM + machine_alarm);
-    if (machine_alarm_detail != 0) {
-        panel_screen[LINE_1 + LETTER_AT] = 'Z';
+    if (ways[machine_alarm] & WAY_AXIS) {
+        panel_screen[LINE_1_END] = 'X' + ('Z' - 'X') * machine_alarm_detail;
     }
 }
 
@@ -239,7 +238,8 @@ static void second_line(uint8_t part)
     if (answer != 0) {
         screen_text(LINE_2, answer);
     } else if (machine_state == STATE_ALARM) {
-        screen_text(LINE_2, TEXT_WAY + ways[machine_alarm]);
+        screen_text(LINE_2,
+                    TEXT_WAY + (ways[machine_alarm] & (uint8_t)~WAY_AXIS));
     } else if (machine_state == STATE_PAUSE && show_message()) {
         return;
     } else if (!machine_quiet()) {

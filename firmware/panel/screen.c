@@ -3,6 +3,7 @@
 
 #include "panel/screen.h"
 #include "arithmetic.h"     /* proportions */
+#include "lathe/machine.h"  /* homed or not */
 #include "link/protocol.h"  /* axes, settings */
 #include "motion/path.h"    /* step queue */
 #include "motion/stream.h"  /* positions */
@@ -84,6 +85,10 @@ void screen_position(uint8_t axis)
     uint8_t at = LINE_2;
     uint8_t to = PLACE_Z - 1;
 
+    if (!machine_homed) {
+        screen_text(LINE_2, TEXT_NOT_HOMED);
+        return;
+    }
     path_keep_up();
     steps = stream_position(axis) - settings[SETTING_ZERO_X + axis];
     if (steps < 0) {

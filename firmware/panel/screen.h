@@ -34,7 +34,8 @@ void screen_whole(uint8_t from, uint8_t to, uint16_t value);
 /* Nanometres of the last decimal: thousandths of a millimetre or inch. */
 uint16_t screen_unit(void);
 
-/* Where the tool is, X as a diameter, in the second line. */
+/* Where the tool is, X as a diameter, in the second line: one axis of it; or
+   that nobody knows. */
 void screen_position(uint8_t axis);
 
 #endif

@@ -99,6 +99,29 @@ def test_five_keys_without_back_lead_everywhere_and_back() -> None:
     panel.check()
 
 
+@pytest.mark.parametrize("other", [None, "right", "x-out"])
+@on_a_new_chip
+def test_a_slide_moves_as_long_as_its_key_is_held_and_no_longer(other: str | None) -> None:
+    panel = AtThePanel(settings={"homing_repeats": 1}, stock_diameter_mm=0.1)
+    bench = panel.bench
+    panel.press("ok")
+    panel.waits(State.IDLE)
+    panel.press(*["down"] * 6, "ok", "down", "ok", "ok", "ok", "up", "ok")
+    bench.lathe.panel.hold("left")
+    bench.run(2.0)
+    assert bench.is_in(State.MOVING)
+    if other is None:
+        bench.lathe.panel.release()
+    else:
+        bench.lathe.panel.hold(other)
+    # 25 ms until the key counts, then it brakes from 1,000 to 400 step/s at 8,000 step/s2.
+    bench.run(0.025 + 0.075 + 0.05)
+    assert not bench.moving
+    assert bench.is_in(State.IDLE)
+    bench.lathe.panel.release()
+    panel.check()
+
+
 def assert_nothing_is_driven(bench: Bench) -> None:
     """Check that the panel's pins are inputs and the converter is off."""
     assert bench.chip.peek(TRISA) & 0x3F == 0x3F

@@ -7,7 +7,7 @@ import menu_model
 import pytest
 from simulated.at_the_panel import ANSWER_S, STARTED_S, STORED_S, AtThePanel
 from simulated.processes import on_a_new_chip
-from tornillo.protocol import Alarm, SettingId, State
+from tornillo.protocol import Alarm, Axis, SettingId, State
 
 PANEL = menu_model.load()
 MAIN, *SUBMENUS = PANEL.menus
@@ -58,7 +58,12 @@ def test_every_alarm_tells_what_has_happened_and_the_way_out(setting: int) -> No
     for row in PANEL.raw["alarm"].values():
         if row["value"] != Alarm.NONE:
             chip.set_variable("machine_alarm", row["value"])
-            panel.shows(row["panel"][language], ways[row["panel_way"]][language])
+            for axis in Axis:
+                chip.set_variable("machine_alarm_detail", axis)
+                text = row["panel"][language]
+                if text.endswith(menu_model.AXIS):
+                    text = f"{text.removesuffix(menu_model.AXIS):15}{axis.name}"
+                panel.shows(text, ways[row["panel_way"]][language])
     chip.set_variable("machine_state", State.IDLE)
 
 

@@ -7,7 +7,7 @@
         global  _ladder_read
 
 ONE_ANALOGUE    equ     0x0E            ; ADCON1: AN0 only
-SLOW_LEFT       equ     0x3E            ; ADCON2: left justified, 20 TAD, Fosc/64
+SLOW_LEFT       equ     0x3E            ; ADCON2: left, 20 TAD, Fosc/64
 CHANNEL_0       equ     0x01            ; ADCON0: on
 HALF            equ     16              ; half the distance of two keys
 

@@ -25,8 +25,8 @@ static __code const uint8_t ways[] = {ALARM_WAYS(TAKE_WAY)};
 /* An answer stands for so long, ms. */
 #define ANSWER_MS 1500
 
-/* Lines are written one after the other, all of them in 32 ms: these bits of
-   the time tell which. */
+/* Pieces of the lines are written one after the other, all of them in 32 ms:
+   these bits of the time tell which. */
 #define TURNS 0x1C
 #define TURN 4 /* ms */
 
@@ -38,6 +38,7 @@ static __code const uint8_t ways[] = {ALARM_WAYS(TAKE_WAY)};
 
 static uint8_t answer; /* text, 0 none */
 static uint16_t answer_at;
+static uint8_t column; /* behind the operation */
 static uint8_t override;
 static uint8_t override_shown; /* instead of the time left */
 static uint16_t second_at;
@@ -132,6 +133,7 @@ static void show_left(void)
     uint16_t seconds = left % 60;
 
     if (left == 0) {
+        screen_clear(LINE_1 + TIME_AT);
         return;
     }
     screen_whole(LINE_1 + TIME_AT, LINE_1 + TIME_AT + 1, left / 60);
@@ -167,18 +169,25 @@ static uint8_t show_short(uint8_t at, uint8_t value)
     return end + 1;
 }
 
-static void show_run(void)
+static void show_operation(void)
 {
-    uint8_t at;
+    column = show_short(LINE_1, passes_operation());
+    panel_screen[column] = '/';
+    column = show_short(column + 1, part_operations);
+    panel_screen[column] = ' ';
+}
 
-    screen_clear(LINE_1);
-    at = show_short(LINE_1, passes_operation());
+/* Behind the operation. */
+static void show_pass(void)
+{
+    uint8_t at = show_short(column + 1, passes_pass());
+
     panel_screen[at] = '/';
-    at = show_short(at + 1, part_operations);
-    at = show_short(at + 1, passes_pass());
-    panel_screen[at] = '/';
-    show_short(at + 1, passes_passes());
-    show_status();
+    at = show_short(at + 1, passes_passes());
+    while (at < LINE_1 + TIME_AT) {
+        panel_screen[at] = ' ';
+        at++;
+    }
 }
 
 /* Message or tool of the record that the part waits at; 16 of its characters
@@ -224,7 +233,7 @@ static void first_line(void)
         show_alarm();
     } else if (machine_running()) {
         menu_leave();
-        show_run();
+        show_operation();
     } else if (machine_state == STATE_HOMING ||
                machine_state == STATE_TOUCHING) {
         screen_text(LINE_1, TEXT_STATE + machine_state);
@@ -277,6 +286,16 @@ void panel_poll(void)
         break;
     case 1 * TURN:
         first_line();
+        break;
+    case 2 * TURN:
+        if (machine_running()) {
+            show_pass();
+        }
+        break;
+    case 3 * TURN:
+        if (machine_running()) {
+            show_status();
+        }
         break;
     case 5 * TURN:
         second_line(0);

@@ -4,7 +4,7 @@
  * SPDX-License-Identifier: Apache-2.0
  *
  * Places are those of panel_screen (lcd.h). Nothing here takes longer than
- * 1.5 ms, and the step queue is filled up before (path_keep_up()).
+ * 1 ms or so, and the step queue is filled up before (path_keep_up()).
  *
  * Main loop only.
  */

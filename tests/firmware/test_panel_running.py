@@ -12,12 +12,14 @@ from simulated.little_pin import CYLINDER, FACE, TOOL
 from simulated.processes import on_a_new_chip
 from tornillo.image import Record
 from tornillo.protocol import OVERRIDE_MAX, OVERRIDE_MIN, SettingId, State
+from virtual_lathe.chip import CYCLES_PER_SECOND
 from virtual_lathe.panel import KEYS, Panel
 
 OTHER = TOOL._replace(kind=1, name=b"parting".ljust(12, b"\0"))
 MESSAGE = "turn the work round, then RUN"
 HALF_S = 2.048  # one half of a long message, then the other
 RUN_S = 30.0
+TOSL, TOSH = 0xFFD, 0xFFE
 
 
 def homed(*operations: Record) -> AtThePanel:
@@ -109,6 +111,23 @@ def test_the_override_ends_at_its_limits(key: str, last: int) -> None:
         scale = panel.bench.chip.variable("ramp_scale", 2)
         assert scale == pytest.approx(256 * percent / 100, abs=1)
     assert percent == last
+
+
+@on_a_new_chip
+def test_the_main_loop_is_never_kept_for_more_than_two_milliseconds() -> None:
+    panel = homed(FACE, CYLINDER)
+    chip = panel.bench.chip
+    panel.press("ok")
+    panel.press("up")
+    begin = chip.symbols.code("panel_poll")
+    worst = 0
+    for _ in range(60):
+        assert chip.run_to_address(begin)
+        entered = chip.cycle
+        assert chip.run_to_address(chip.read(TOSL) | chip.read(TOSH) << 8)
+        worst = max(worst, chip.cycle - entered)
+        assert panel.bench.is_in(State.RUNNING)
+    assert 0.5 < worst / CYCLES_PER_SECOND * 1000 < 2.0
 
 
 @pytest.mark.parametrize("rate", [5_000, 15_000, 25_000])

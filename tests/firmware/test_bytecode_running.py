@@ -155,9 +155,8 @@ def build(folder: Path, source: str) -> Path:
     (folder / "bytes.c").write_text(source)
     run(SDCC / "bin/sdcc", *SDCC_FLAGS, "-S", "native.c", "-o", "native.asm")
     run(SDCC / "bin/sdcc", *SDCC_FLAGS, "-E", "bytes.c", "-o", "bytes.i")
-    own = [
-        ROOT / f"firmware/{name}.asm" for name in ("startup", "arithmetic", "bytecode/interpreter")
-    ]
+    own = [Path(__file__).with_name("bare_start.asm")]
+    own += [ROOT / f"firmware/{name}.asm" for name in ("arithmetic", "bytecode/interpreter")]
     compiler: list[str | Path] = [sys.executable, TOOLCHAIN / "compile_bytecode.py"]
     run(
         *compiler,

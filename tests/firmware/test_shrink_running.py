@@ -163,7 +163,7 @@ def built(folder: Path) -> tuple[Path, Path]:
     (folder / "plain.c").write_text(PROGRAM)
     run(SDCC / "bin/sdcc", *SDCC_FLAGS, "-S", "plain.c", "-o", "plain.asm")
     run(SDCC / "bin/sdcc", *SDCC_FLAGS, "-c", ROOT / "build/firmware/sfr.c", "-o", "sfr.o")
-    startup = ROOT / "firmware/startup.asm"
+    startup = Path(__file__).with_name("bare_start.asm")
     run(sys.executable, TOOL, "--asm", startup, "-o", "shrunk.asm", "plain.asm")
     run("gpasm", "-p18f4550", "-c", startup, "-o", "startup.o")
     for name in ("plain", "shrunk"):

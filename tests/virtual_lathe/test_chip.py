@@ -183,3 +183,16 @@ def test_instruments_see_writes_coverage_and_pins(program: Program) -> None:
     assert 0 in executed
     assert "$timescale 1 ns $end" in trace
     assert all(f" {pin} $end" in trace for pin in ("RA0", "RB3", "RC7", "RD0", "RE2"))
+
+
+def _begins(firmware: str) -> list[int]:
+    chip = Chip(firmware)
+    begins = []
+    while chip.pc < 12:
+        begins.append(chip.cycle)
+        chip.run_to(chip.cycle + 1)
+    return begins
+
+
+def test_reading_and_writing_a_table_takes_two_cycles(program: Program) -> None:
+    assert in_new_process(_begins, program("table_reads")) == [0, 2, 4, 6, 8, 10]

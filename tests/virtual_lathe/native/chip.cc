@@ -118,6 +118,7 @@ void Chip::classify()
     for (unsigned word = 0; word < flags_.size(); word++) {
         unsigned opcode = cpu->program_memory[word]->get_opcode();
         uint8_t flag = (opcode & ~1u) == 0x0010   ? RETFIE
+                       : (opcode & ~3u) == 0x0008 ? TBLRD
                        : (opcode & ~3u) == 0x000C ? TBLWT
                        : opcode == 0x0004         ? CLRWDT
                                                   : 0;
@@ -301,6 +302,9 @@ int Chip::run(uint64_t until)
         cpu->mCurrentPhase = phase->advance();
         if (capture)
             enter_interrupt(stack_before, start);
+        // Table 26-2: both take two cycles; gpsim 0.31 gives them one.
+        if (flag & (TBLRD | TBLWT))
+            get_cycles().increment();
         if (flag & RETFIE)
             leave_interrupt();
         stack_depth_max =

@@ -123,7 +123,13 @@ public:
     std::vector<std::pair<uint64_t, int>> resets; // cycle, RESET_TYPE
 
 private:
-    enum Flag : uint8_t { BREAK = 1, RETFIE = 2, TBLWT = 4, CLRWDT = 8 };
+    enum Flag : uint8_t {
+        BREAK = 1,
+        RETFIE = 2,
+        TBLWT = 4,
+        CLRWDT = 8,
+        TBLRD = 16
+    };
     struct Entry {
         int level;
         uint64_t start;

@@ -158,7 +158,7 @@ def test_two_damaged_records_give_defaults_and_an_alarm_until_acknowledged() -> 
     assert bench.alarm == (Alarm.SETTINGS_LOST, 0)
     assert bench.refusal(bench.host.home) is ErrorCode.ALARM
     bench.power_cycle()
-    bench.run(0.05)
+    bench.run(0.1)
     assert bench.alarm == (Alarm.SETTINGS_LOST, 0)
     bench.host.reset()
     bench.power_cycle()
@@ -187,7 +187,7 @@ def test_a_cut_of_power_during_a_save_leaves_the_old_settings_or_the_new() -> No
             bench.run(seconds)
         except Stopped:
             bench.power_cycle(round(seconds * 1e6))
-        bench.run(0.03)
+        bench.run(0.1)
         assert bench.is_in(State.IDLE)
         return values(bench)
 

@@ -15,7 +15,8 @@ SDCC_FLAGS := -mpic16 -p$(CHIP) --no-warn-non-free --nostdlib --nostdinc \
   --fomit-frame-pointer $(OPTIONS)
 
 # What is in no hurry is compiled to byte code: half the size, ten times slower.
-BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/buttons.c lathe/homing.c \
+BYTE_C := $(addprefix firmware/,lathe/machine.c lathe/guard_aim.c \
+  lathe/buttons.c lathe/homing.c \
   lathe/passes.c lathe/places.c lathe/progress.c lathe/cuts.c lathe/manual.c \
   lathe/part_check.c lathe/part_values.c lathe/shape_check.c lathe/stroke.c \
   reset.c link/commands.c link/lengths.c motion/set_up.c panel/led.c \

@@ -34,7 +34,7 @@ extern volatile uint8_t guard_armed;
 void guard_clear(void);
 
 /* Stops the stream as soon as an input is active (level 1) or not (0); input
-   0 = none. In machine.c, which is no part of an interrupt. */
+   0 = none. */
 void guard_stop_at(uint8_t input, uint8_t level);
 extern volatile uint8_t guard_stop_input;
 extern volatile uint8_t guard_stop_inverted; /* input where level is 0 */

@@ -52,14 +52,6 @@ static void set_homed(uint8_t axes)
     arm();
 }
 
-void guard_stop_at(uint8_t input, uint8_t level)
-{
-    guard_stop_input = 0;
-    guard_stop_inverted = level ? 0 : input;
-    guard_stopped = 0;
-    guard_stop_input = input;
-}
-
 static void raise(uint8_t alarm, uint8_t detail)
 {
     path_cancel();

@@ -26,7 +26,7 @@
 #define CRC16_INITIAL                       0xFFFF
 
 /* units of the part store; a part takes one to ten, its slot is the first */
-#define PART_SLOTS                          12
+#define PART_SLOTS                          10
 /* bytes of one unit, 64 of them for its header when it is a part's first */
 #define PART_UNIT                           256
 /* no slot; in RUN: the selected part */

@@ -129,7 +129,7 @@ point:
         bcf     STATUS, C, A
         btfsc   _flash_address + 1, 7, B
         return
-        movlw   0x74
+        movlw   0x76
         subwf   _flash_address + 1, W, B
         return
         end

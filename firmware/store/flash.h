@@ -5,7 +5,7 @@
  *
  * Erasing and writing stop the processor for about 2 ms each (data sheet
  * D133A), interrupts included: never while moving. The caller sees to it
- * that addresses lie in the part store (0x7400..0x7FFF); others are ignored.
+ * that addresses lie in the part store (0x7600..0x7FFF); others are ignored.
  */
 #ifndef FLASH_H
 #define FLASH_H
@@ -14,7 +14,7 @@
 
 #define FLASH_BLOCK 64u /* erased together */
 #define FLASH_ROW 32u   /* written together */
-#define FLASH_STORE_BEGIN 0x7400u
+#define FLASH_STORE_BEGIN 0x7600u
 #define FLASH_STORE_END 0x8000u
 
 /* Address for the next call; flash_read() advances it by one. */

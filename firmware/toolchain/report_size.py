@@ -15,7 +15,7 @@ from stack_depth import ByteCode, worst_case
 
 FLASH_BYTES, RAM_BYTES = 32_768, 2_048
 BUDGETS = {
-    "flash_bytes": 0x7400,  # where the part store begins; why: docs/firmware-tour.md
+    "flash_bytes": 0x7600,  # where the part store begins; why: docs/firmware-tour.md
     "ram_bytes": RAM_BYTES * 94 // 100,
     "hw_stack_worst_levels": 20,
 }

@@ -12,7 +12,7 @@ from virtual_lathe.chip import Chip
 from firmware.test_shrink_running import ROOT, SDCC, SDCC_FLAGS, TOOL
 
 ARITHMETIC = ROOT / "firmware/arithmetic.asm"
-STARTUP = ROOT / "firmware/startup.asm"
+STARTUP = Path(__file__).with_name("bare_start.asm")
 PROGRAM = """
 #include <stdint.h>
 #pragma stack 0x700 256

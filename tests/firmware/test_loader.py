@@ -370,8 +370,11 @@ def test_the_key_counts_after_a_reset_instruction_only() -> None:
 def test_the_reset_cause_is_told_as_without_a_loader() -> None:
     bench = Bench()
     bench.run(DECISION_S)
-    assert bench.chip.variable("commands_reset_cause") == ResetCause.POWER_ON
+    bench.connect()
+    assert bench.status().reset_cause == ResetCause.POWER_ON
     for kind in (Reset.MCLR, Reset.BROWN_OUT, Reset.WATCHDOG):
+        bench.unplug()
         bench.chip.reset(kind)
         bench.run(DECISION_S)
-        assert bench.chip.variable("commands_reset_cause") == ResetCause[kind.name]
+        bench.connect()
+        assert bench.status().reset_cause == ResetCause[kind.name]

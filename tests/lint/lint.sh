@@ -62,18 +62,20 @@ check_c() {
 short_enough() {
     local columns=$1 lines=$2
     shift 2
-    LC_ALL=C.UTF-8 awk -v columns="$columns" -v lines="$lines" '
-        length($0) > columns {
-            printf "%s:%d: %d columns, at most %d\n", FILENAME, FNR,
-                length($0), columns
-            bad = 1
-        }
+    local bad=0
+    # grep counts characters where mawk counts bytes.
+    if LC_ALL=C.UTF-8 grep -nHE "^.{$((columns + 1))}" "$@"; then
+        printf 'at most %d columns\n' "$columns"
+        bad=1
+    fi
+    awk -v lines="$lines" '
         FNR == lines {
             printf "%s: %d lines or more, fewer than %d wanted\n", FILENAME,
                 lines, lines
             bad = 1
         }
-        END { exit bad }' "$@"
+        END { exit bad }' "$@" || bad=1
+    return "$bad"
 }
 
 # --- words ------------------------------------------------------------------------

@@ -21,7 +21,7 @@ CRC16_POLYNOMIAL = 0x1021
 CRC16_INITIAL = 0xFFFF
 CRC16_CHECK = 0x29B1
 #: units of the part store; a part takes one to ten, its slot is the first
-PART_SLOTS = 12
+PART_SLOTS = 10
 #: bytes of one unit, 64 of them for its header when it is a part's first
 PART_UNIT = 256
 #: no slot; in RUN: the selected part

@@ -7,7 +7,7 @@ import random
 
 import pytest
 from simulated import little_pin
-from simulated.bench import PINS, Bench
+from simulated.bench import PINS, START_S, Bench
 from simulated.processes import on_a_new_chip
 from tornillo.protocol import State, StatusFlag
 from virtual_lathe.chip import Drive
@@ -45,7 +45,7 @@ def watch_inputs(bench: Bench) -> None:
 @on_a_new_chip
 def test_pulses_of_up_to_three_milliseconds_never_count(button: str) -> None:
     bench = Bench()
-    bench.run(0.01)
+    bench.run(START_S)
     watch_inputs(bench)
     for tenths in range(1, 30):
         pulse(bench, PINS[button], tenths * 1e-4)
@@ -58,7 +58,7 @@ def test_pulses_of_up_to_three_milliseconds_never_count(button: str) -> None:
 @on_a_new_chip
 def test_a_press_that_bounces_for_five_milliseconds_counts_once(button: str) -> None:
     bench = Bench()
-    bench.run(0.01)
+    bench.run(START_S)
     watch_inputs(bench)
     bounce = random.Random(5)
     for level in (Drive.LOW, Drive.OPEN) * 5:
@@ -103,7 +103,7 @@ def test_a_part_is_started_when_the_button_is_let_go() -> None:
 @on_a_new_chip
 def test_interference_and_bounce_on_a_button_delay_it_and_no_more() -> None:
     bench = Bench()
-    bench.run(0.01)
+    bench.run(START_S)
     watch_inputs(bench)
     noise = random.Random(7)
     for level in (Drive.LOW, Drive.OPEN) * 20:
@@ -125,7 +125,7 @@ def test_interference_and_bounce_on_a_button_delay_it_and_no_more() -> None:
 def test_a_button_held_down_while_power_comes_is_no_press() -> None:
     bench = Bench()
     bench.chip.drive(PINS["run"], Drive.LOW)
-    bench.run(0.1)
+    bench.run(START_S + 0.1)
     assert bench.is_in(State.IDLE)
     bench.chip.drive(PINS["run"], Drive.OPEN)
     bench.run(0.01)
@@ -162,7 +162,7 @@ def test_status_shows_every_button_and_switch_alone() -> None:
 @on_a_new_chip
 def test_an_input_is_seen_three_to_four_milliseconds_after_it_changed() -> None:
     bench = Bench()
-    bench.run(0.05)
+    bench.run(START_S)
     for wait in range(20):
         bench.chip.drive(PINS["hold"], Drive.LOW)
         begun = bench.chip.seconds

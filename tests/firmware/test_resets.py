@@ -8,7 +8,7 @@ from functools import partial
 
 import pytest
 from simulated import little_pin
-from simulated.bench import Bench
+from simulated.bench import START_S, Bench
 from simulated.processes import branch, on_a_new_chip
 from tornillo.protocol import ErrorCode, ResetCause, State
 from virtual_lathe.chip import CYCLES_PER_SECOND, NonVolatile, Reset
@@ -158,7 +158,7 @@ def test_a_brown_out_at_any_moment_of_motion_ends_it_and_is_told(moving: str, mo
 @on_a_new_chip
 def test_whatever_is_in_ram_at_power_on_the_chip_starts_the_same(seed: int) -> None:
     bench = Bench()
-    bench.run(0.05)
+    bench.run(START_S)
     bench.power_cycle(seed)
     assert_quiet_after_reset(bench, ResetCause.POWER_ON)
     assert bench.host.settings()

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from simulated import little_pin
-from simulated.bench import Bench
+from simulated.bench import START_S, Bench
 from simulated.processes import on_a_new_chip
 from tornillo.protocol import Alarm, Axis, ErrorCode, SettingId, State, StatusInput
 from tornillo.touching import Touch, TouchError, set_zero, touch
@@ -254,5 +254,5 @@ def test_contact_in_a_fast_move_is_an_alarm_and_in_a_slow_one_is_not(fast: bool)
 def test_an_open_input_without_a_sensor_says_nothing() -> None:
     bench = Bench()
     bench.chip.drive("RA1", Drive.LOW)
-    bench.run(0.01)
+    bench.run(START_S)
     assert bench.status().inputs == StatusInput(0)

@@ -192,5 +192,5 @@ def test_a_bus_reset_at_any_moment_is_survived(seed: int) -> None:
 def test_a_board_without_vbus_sense_is_always_attached() -> None:
     bench = UsbBench()
     bench.chip.drive("RB6", Drive.OPEN)
-    bench.chip.run(0.1)
+    bench.chip.run(0.2)
     assert bench.chip.peek(UCON) & USBEN

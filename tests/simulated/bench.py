@@ -27,6 +27,8 @@ from simulated.processes import at_the_end, in_any_case
 #: Slides a few steps from their switches: homing is over in a second.
 NEAR = Options(start_x=-30, start_z=-30)
 HOMING_TIMEOUT_S = 60.0
+#: Longer than from a reset through the boot loader to the first look at the inputs.
+START_S = 0.1
 #: The hardware stack has 31 levels; the design allows 20.
 STACK_LEVELS_ALLOWED = 20
 PIE2, CCP2IE = 0xFA0, 0x01

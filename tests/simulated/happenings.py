@@ -12,6 +12,7 @@ from tornillo.protocol import LOADER_MAGIC, Command, ErrorCode, HomedAxis, Setti
 from virtual_lathe.chip import NonVolatile, Reset
 from virtual_lathe.machine import AxisName
 
+from simulated.bench import START_S
 from simulated.situations import IDLE_MS, OTHER, PATIENCE_MS, ROUNDING, Walker
 
 #: Values of every command that has some.
@@ -34,8 +35,6 @@ RECORDS = (0x00, 0x70)
 ESTOP = 0x04  # of inputs_state
 #: A while in which the idle time does not pass.
 WHILE_S = 0.1
-#: From a reset through the boot loader to the first look at the inputs.
-START_S = 0.1
 #: States that end by themselves.
 UNDER_WAY = (State.HOMING, State.RUNNING, State.MOVING, State.TOUCHING)
 #: A way by hand, steps.

@@ -27,7 +27,7 @@ PROGRAM_BEGIN = 0x0800  # behind the boot loader
 EECON1, EEPGD = 0xFA6, 0x80
 EEPROM_S, FLASH_S = 4e-3, 2e-3
 PARTS_OF_A_WRITE = (0.25, 0.75)
-RESTART_S = 0.12  # the boot loader takes half of it
+RESTART_S = 0.12
 
 
 class PowerCut(Exception):

@@ -127,14 +127,20 @@ def test_upload_to_a_full_store_says_how_to_make_room(
 
 
 def test_parts_are_listed_for_people_and_for_scripts(tornillo: Tornillo, test_bar: Path) -> None:
-    assert tornillo("parts").stdout == "no parts stored, all 12 units of the store are free\n"
+    assert (
+        tornillo("parts").stdout
+        == f"no parts stored, all {PART_SLOTS} units of the store are free\n"
+    )
     assert json.loads(tornillo("parts", "--json").stdout) == []
     tornillo("upload", test_bar)
     tornillo("select", "test-bar")
     listed = tornillo("parts").stdout
     assert "test-bar" in listed
     assert "selected" in listed
-    assert "11 of 12 units of the store are free; a part takes 1 to 10\n" in listed
+    assert (
+        f"{PART_SLOTS - 1} of {PART_SLOTS} units of the store are free; a part takes 1 to 10\n"
+        in listed
+    )
     [part] = json.loads(tornillo("parts", "--json").stdout)
     assert (part["slot"], part["name"], part["selected"]) == (0, "test-bar", True)
 

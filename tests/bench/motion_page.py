@@ -66,7 +66,10 @@ def motion_rows(found: dict[str, Any]) -> list[Row]:
         ),
         (
             "steps at full speed after a hold is noticed",
-            f"{found['hold_latency_steps']} (500 to 5,000 steps/s)",
+            ", ".join(
+                f"{count} at {int(rate):,} steps/s"
+                for rate, count in found["hold_latency_steps_by_rate"].items()
+            ),
             "79 to 99 ms late",
         ),
         (

@@ -18,7 +18,7 @@ FOUND: dict[str, Any] = {
     "arc_max_path_rate": 51_387,
     "jitter_max_us": 1 / 12,
     "jitter_max_us_panel": 1 / 12,
-    "hold_latency_steps": 1,
+    "hold_latency_steps_by_rate": {"500": 1, "5000": 2},
     "hold_trials": 1_000,
     "hold_steps_lost": 0,
     "lookahead_time_ratio": 1.0064,
@@ -37,6 +37,12 @@ def test_both_times_of_the_peers_program_stand_beside_its_own() -> None:
     rows = {what: (ours, peer) for what, ours, peer in motion_rows(FOUND)}
     what = "the peer's roughing program, start/stop at 400, 97 steps/s"
     assert rows[what] == ("37.20 s, 39.10 s", "39.46 s")
+
+
+def test_the_steps_after_a_hold_are_told_for_every_rate() -> None:
+    rows = {what: ours for what, ours, _ in motion_rows(FOUND)}
+    told = rows["steps at full speed after a hold is noticed"]
+    assert told == "1 at 500 steps/s, 2 at 5,000 steps/s"
 
 
 def test_a_worst_distance_says_from_how_many_points() -> None:

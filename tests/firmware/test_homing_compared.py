@@ -87,7 +87,9 @@ def test_steps_lost_in_a_run_are_found_by_the_next_homing() -> None:
     bench.run(0.02)
     bench.lathe.machine.set_motor_power(True)
     bench.wait_for(State.IDLE)
-    assert bench.axis(Axis.Z).slide - PARK in (-12, -16)
+    lost = PARK - bench.axis(Axis.Z).slide
+    # A rotor without current falls in step again a multiple of four steps behind.
+    assert lost in range(8, 32, 4)
     bench.host.home()
     assert_alarm_and_recovery(bench, Alarm.PHASE_DRIFT, Axis.Z)
     bench.home()

@@ -18,8 +18,8 @@ RAM_END = 0x800
 ESTOP_PIN = "RD7"
 #: Simulated seconds after which a request without answer is a hang.
 HANG_S = 2.0
-#: Counters with their sizes, which reach their upper bytes by and by.
-COUNTERS = {"milliseconds": 2, "tick_high": 2, "frame_bad_frames": 2}
+#: Counters of two bytes, which reach their upper bytes by and by: what makes the next count do so.
+COUNTERS = {"milliseconds": 0xFFFF, "tick_high": 0x00FF, "frame_bad_frames": 0x00FF}
 #: What happens by itself happens within this simulated time.
 LONG_S = 3.0
 IMAGE = bytes(range(84))
@@ -54,8 +54,8 @@ class Target:
         """Everything a host can ask for by right, except motion; returns the RAM written."""
         chip = self.bench.chip
         chip.watch_writes(0, RAM_END - 1)
-        for name, size in COUNTERS.items():
-            chip.set_variable(name, (1 << 8 * size - 1) - 1, size)
+        for name, value in COUNTERS.items():
+            chip.set_variable(name, value, 2)
         self._control_requests()
         self._link_requests()
         self._accidents()

@@ -24,7 +24,7 @@ from tornillo.commands.jog_pad import frame as jog_frame
 from tornillo.commands.watch import View
 from tornillo.drawing import draw_part
 from tornillo.jogging import JogPad
-from tornillo.protocol import State
+from tornillo.protocol import SettingId, State
 from tornillo.units import Scale
 from virtual_lathe.lathe import Options, VirtualLathe
 
@@ -103,11 +103,12 @@ def new_screen() -> None:
 
 
 def live_screens() -> None:
-    """`tornillo jog` of a lathe that waits, `tornillo watch` of one that cuts."""
+    """`tornillo jog` of a lathe that waits, `tornillo watch` and the panel of one that cuts."""
     path = EXAMPLES / "pawn.toml"
-    lathe = VirtualLathe(Options(part=path, backlash_x=23, backlash_z=31))
+    lathe = VirtualLathe(Options(part=path, backlash_x=23, backlash_z=31, panel=True))
     lathe.plug()
     with Lathe(lathe.port) as chip:
+        chip.set_setting(SettingId.PANEL, 1)
         slot = chip.upload(Part.load(path).image(chip.machine()))
         chip.home()
         while chip.status().state is State.HOMING:
@@ -127,6 +128,7 @@ def live_screens() -> None:
         console = recorder()
         console.print(view.frame(status, WIDE))
         save(console, "watch", "tornillo watch")
+        lathe.panel.picture(IMAGES / "panel.svg")
 
 
 def main() -> int:

@@ -54,7 +54,7 @@ def wanted() -> set[Message]:
     for texts in (ALARM_TEXTS, ERROR_TEXTS, REFUSAL_TEXTS, WARNING_TEXTS):
         for text in texts.values():
             found.update((text.cause, text.remedy))
-    found.update(setting.meaning for setting in SETTINGS)
+    found.update(text for setting in SETTINGS for text in (setting.meaning, setting.unit))
     names = [*State, *ResetCause]
     found.update(name.name.lower().replace("_", "-") for name in names)
     return {message for message in found if not isinstance(message, str) or message.strip()}

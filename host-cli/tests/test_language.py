@@ -27,6 +27,8 @@ CATALOGUES = sorted((SOURCE / "locale").glob("*/LC_MESSAGES/tornillo.po"))
 FIELD = re.compile(r"\{[^{}]*\}|%\(\w+\)s")
 #: Functions whose text the catalogue has; `_length` makes an option of its help.
 SAID = ("_", "later", "plural", "_length")
+#: Functions that show a text, be it a single word.
+SHOWN = ("echo", "print", "TornilloError")
 #: What is no text for people: names of files and styles, patterns, what other programs say, the
 #: text of part files and pictures, what only the library's caller sees.
 NO_MESSAGES = {
@@ -67,15 +69,23 @@ def sentences(path: Path) -> Iterator[tuple[int, str]]:
     parent = {child: node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
     for node in ast.walk(tree):
         text = _text(node, parent)
-        if text is None or not re.search(r"[A-Za-z]{2,}.* | +[A-Za-z]{3,}", text):
+        if text is None:
             continue
         above = parent[node]
+        shown = isinstance(above, ast.Call) and node in above.args and _name(above) in SHOWN
+        if not re.search(r"[A-Za-z]{3,}" if shown else r"[A-Za-z]{2,}.* | +[A-Za-z]{3,}", text):
+            continue
         if isinstance(above, ast.Call) and getattr(above.func, "id", "") in SAID:
             continue
         if isinstance(above, ast.keyword) and above.arg in ("help", "metavar"):
             continue
         if not isinstance(above, ast.Expr):  # those are docstrings
             yield getattr(node, "lineno", 0), text
+
+
+def _name(call: ast.Call) -> str:
+    """The name of the function that is called, without its module."""
+    return getattr(call.func, "attr", "") or getattr(call.func, "id", "")
 
 
 def _text(node: ast.AST, parent: dict[ast.AST, ast.AST]) -> str | None:
@@ -106,10 +116,14 @@ def test_a_forgotten_message_would_be_found(tmp_path: Path) -> None:
     path = tmp_path / "forgotten.py"
     path.write_text(
         '"""A module."""\nraise TornilloError("the lathe is upset", _("be kind"))\n'
-        'print(f"slot {3} is empty")\n',
+        'print(f"slot {3} is empty")\nclick.echo("stopped", err=True)\n',
         encoding="utf-8",
     )
-    assert [text for _line, text in sentences(path)] == ["the lathe is upset", "slot {} is empty"]
+    assert [text for _line, text in sentences(path)] == [
+        "the lathe is upset",
+        "slot {} is empty",
+        "stopped",
+    ]
 
 
 @pytest.fixture(params=CATALOGUES, ids=lambda path: path.parents[1].name)
@@ -207,6 +221,26 @@ def test_refusals_are_explained_in_spanish(
     assert 'no hay ningún verbo "hom"; ¿quiso decir "home"?' in tornillo("hom").stderr
 
 
+def test_settings_are_explained_in_spanish_with_their_units(
+    tornillo: Tornillo, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("TORNILLO_LANG", "es")
+    explained = "zero_z: Z de máquina de la cara frontal de la pieza, -32000 a 0 pasos\n"
+    assert tornillo("settings", "get", "zero_z").stderr == explained
+    refused = tornillo("settings", "set", "home_rate", "10").stderr
+    assert "home_rate no puede ser 10 pasos/s: va de 20 a 4000 pasos/s" in refused
+    listed = tornillo("settings").stdout
+    head = ["nombre", "valor", "unidad", "mínimo", "máximo", "significado"]
+    assert listed.splitlines()[0].split() == head
+    assert "pasos/s2" in listed
+    assert "step" not in re.sub(r"\bstep_[xz]_nm", "", listed)
+
+
+def test_a_stop_is_told_in_spanish(tornillo: Tornillo, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("TORNILLO_LANG", "es")
+    assert tornillo("stop").stdout == "detenido\n"
+
+
 def test_scripts_read_the_same_in_every_language(
     tornillo: Tornillo, monkeypatch: pytest.MonkeyPatch, test_bar: Path
 ) -> None:
@@ -214,7 +248,8 @@ def test_scripts_read_the_same_in_every_language(
     for code in ("en", "es"):
         monkeypatch.setenv("TORNILLO_LANG", code)
         status = json.loads(tornillo("status", "--json").stdout)
-        told.append((status, json.loads(tornillo("check", test_bar, "--json").stdout)))
+        check = json.loads(tornillo("check", test_bar, "--json").stdout)
+        told.append((status, check, json.loads(tornillo("settings", "--json").stdout)))
     assert told[0] == told[1]
 
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 from tornillo.errors import TornilloError
 from tornillo.language import _
 from tornillo.protocol import Axis, SettingId
-from tornillo.setting_names import BY_ID
+from tornillo.setting_names import BY_ID, unit
 
 NM_PER_UM = 1000
 SIGMAS = 3
@@ -216,7 +216,7 @@ def _fitting(setting: SettingId, value: int) -> int:
             ).format(
                 setting=setting.name.lower(),
                 value=value,
-                unit=entry.unit,
+                unit=unit(entry),
                 minimum=entry.minimum,
                 maximum=entry.maximum,
             ),

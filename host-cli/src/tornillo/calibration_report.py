@@ -28,7 +28,7 @@ def report(found: Calibration) -> list[str]:
     lines += [
         _("backlash    {backlash_um}").format(backlash_um=_figure(found.backlash_um, "um", 2)),
         _("            {backlash}; the lathe takes up {dead}").format(
-            backlash=_figure(found.backlash, "steps", 1), dead=found.known.dead
+            backlash=_figure(found.backlash, _("steps"), 1), dead=found.known.dead
         ),
     ]
     if found.switch_travel is not None:

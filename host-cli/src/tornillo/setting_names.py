@@ -29,9 +29,14 @@ def nearest(name: str) -> str:
     )
 
 
+def unit(setting: Setting) -> str:
+    """The unit of a setting in the user's language; empty when it has none."""
+    return _(setting.unit) if setting.unit else ""
+
+
 def amount(setting: Setting, value: int) -> str:
     """`value` with its unit."""
-    return f"{value} {setting.unit}".rstrip()
+    return f"{value} {unit(setting)}".rstrip()
 
 
 def span(setting: Setting, told: SettingGetData | None = None) -> str:
@@ -42,4 +47,4 @@ def span(setting: Setting, told: SettingGetData | None = None) -> str:
 
 def explained(setting: Setting, told: SettingGetData | None = None) -> str:
     """Name, meaning and range of a setting."""
-    return f"{setting.id.name.lower()}: {setting.meaning}, {span(setting, told)}"
+    return f"{setting.id.name.lower()}: {_(setting.meaning)}, {span(setting, told)}"

@@ -44,9 +44,9 @@ def calibrate() -> None:
     """Separate backlash from switch travel, and fit the size of a step.
 
     \b
-    Examples: tornillo calibrate marks z       # three marks cut, measured by you
-              tornillo calibrate gauge x       # dial gauge, readings typed
-              tornillo calibrate contact x     # contact sensor, nothing to type
+    Examples: tornillo calibrate marks z
+              tornillo calibrate gauge x
+              tornillo calibrate contact x
     """
 
 

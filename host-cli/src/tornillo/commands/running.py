@@ -169,7 +169,7 @@ def _started(lathe: Lathe, follow: bool) -> None:
     """Follow a run that was just started, if wanted."""
     if follow:
         follow_run(lathe)
-        click.echo("finished")
+        click.echo(_("finished"))
     else:
         click.echo(_("running; see `tornillo status`, hold with `tornillo hold`"))
 
@@ -183,7 +183,7 @@ def stop() -> None:
     """
     with connected() as lathe:
         lathe.stop()
-    click.echo("stopped")
+    click.echo(_("stopped"))
 
 
 @click.command()

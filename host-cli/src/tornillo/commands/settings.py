@@ -13,7 +13,7 @@ from tornillo.language import _
 from tornillo.lathe import Lathe
 from tornillo.machine_file import file_text, load_file
 from tornillo.protocol import Axis
-from tornillo.setting_names import explained, named, span
+from tornillo.setting_names import explained, named, span, unit
 from tornillo.settings import Change, outdated_parts, store, store_all
 from tornillo.units import NM_PER_UNIT, Scale
 
@@ -50,14 +50,24 @@ def settings(context: click.Context, as_json: bool) -> None:
             "unit": entry.unit,
             "minimum": data.minimum,
             "maximum": data.maximum,
-            "meaning": _(entry.meaning),
+            "meaning": entry.meaning,
         }
         for entry, data in found
     ]
     if as_json:
         print_json(rows)
-    else:
-        print_table(rows)
+        return
+    print_table(
+        {
+            _("name"): entry.id.name.lower(),
+            _("value"): data.value,
+            _("unit"): unit(entry),
+            _("minimum"): data.minimum,
+            _("maximum"): data.maximum,
+            _("meaning"): _(entry.meaning),
+        }
+        for entry, data in found
+    )
 
 
 @settings.command("get")

@@ -39,14 +39,14 @@ BOARD_PIN(BUTTON_RUN, D, 4)         /* 0 = pressed */
 BOARD_PIN(BUTTON_HOLD, D, 5)        /* 0 = pressed */
 BOARD_PIN(BUTTON_STOP, D, 6)        /* 0 = pressed */
 BOARD_PIN(ESTOP_SENSE, D, 7)        /* 0 = motor power present */
-BOARD_PIN(KEY_LADDER, A, 0)         /* reserved, analogue */
+BOARD_PIN(KEY_LADDER, A, 0)         /* analogue: keys of the panel */
 BOARD_PIN(PROBE, A, 1)              /* 0 = contact; pulled up outside */
-BOARD_PIN(LCD_D4, A, 2)             /* reserved */
-BOARD_PIN(LCD_D5, A, 3)             /* reserved */
-BOARD_PIN(LCD_D6, A, 4)             /* reserved */
-BOARD_PIN(LCD_D7, A, 5)             /* reserved */
-BOARD_PIN(LCD_RS, E, 0)             /* reserved */
-BOARD_PIN(LCD_E, E, 1)              /* reserved */
+BOARD_PIN(LCD_D4, A, 2)             /* display of the panel */
+BOARD_PIN(LCD_D5, A, 3)             /* display of the panel */
+BOARD_PIN(LCD_D6, A, 4)             /* display of the panel */
+BOARD_PIN(LCD_D7, A, 5)             /* display of the panel */
+BOARD_PIN(LCD_RS, E, 0)             /* display of the panel */
+BOARD_PIN(LCD_E, E, 1)              /* display of the panel */
 /* clang-format on */
 
 /* Directions: 1 = input. The upper halves of ports B and D are inputs, so

@@ -10,6 +10,7 @@ A table stands between `<!-- generated: NAME -->` and `<!-- end -->`.
 
 import re
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
@@ -18,11 +19,26 @@ PIN = re.compile(r"^BOARD_PIN\((\w+), (\w), (\d)\) *(?:/\* (.*?) \*/)?", re.MULT
 MARKER = r"(<!-- generated: {name} -->\n).*?(<!-- end -->)"
 
 
-def pins() -> str:
+def pins(say: Callable[[str], str] = str) -> str:
     """The pins of the chip as firmware/board.h has them."""
-    rows = ["| pin | name in the firmware | reads or means |", "|---|---|---|"]
+    heads = ("pin", "name in the firmware", "reads or means")
+    rows = ["| " + " | ".join(say(head) for head in heads) + " |", "|---|---|---|"]
     for name, port, bit, meaning in PIN.findall(BOARD.read_text(encoding="utf-8")):
-        rows.append(f"| R{port}{bit} | `{name}` | {meaning} |")
+        rows.append(f"| R{port}{bit} | `{name}` | {say(meaning) if meaning else ''} |")
+    return "\n".join(rows) + "\n"
+
+
+def refusals() -> str:
+    """Why the chip refuses parts, in Spanish."""
+    from tornillo.language import use
+    from tornillo.protocol_texts import REFUSAL_TEXTS
+
+    say = use("es").gettext
+    rows = ["| código | nombre | causa | qué hacer |", "|---|---|---|---|"]
+    for refusal, text in REFUSAL_TEXTS.items():
+        cause, remedy = say(text.cause), say(text.remedy)
+        rows.append(f"| {refusal.value} | `{refusal.name}` | {cause} | {remedy} |")
+    use("en")
     return "\n".join(rows) + "\n"
 
 
@@ -43,6 +59,7 @@ def settings() -> str:
     """All settings in Spanish."""
     from tornillo.language import use
     from tornillo.protocol import SETTINGS
+    from tornillo.setting_names import unit
 
     say = use("es").gettext
     rows = ["| nombre | de fábrica | intervalo | unidad | significado |", "|---|---|---|---|---|"]
@@ -50,7 +67,7 @@ def settings() -> str:
         limits = f"{entry.minimum} a {entry.maximum}"
         name = entry.id.name.lower()
         rows.append(
-            f"| `{name}` | {entry.default} | {limits} | {entry.unit} | {say(entry.meaning)} |"
+            f"| `{name}` | {entry.default} | {limits} | {unit(entry)} | {say(entry.meaning)} |"
         )
     use("en")
     return "\n".join(rows) + "\n"
@@ -60,15 +77,19 @@ def pages() -> dict[str, str]:
     """Every page with its generated text, by its file name."""
     from cli_pages import page
     from part_keys import table_text
+    from spanish import say
 
     found = {"cli.md": page("en"), "es/comandos.md": page("es")}
     for name, mark, text in (
         ("wiring.md", "pins", pins()),
         ("part-file.md", "keys", table_text()),
         ("es/alarmas.md", "alarms", alarms()),
+        ("es/cableado.md", "pins", pins(say)),
+        ("es/archivo-de-pieza.md", "keys", table_text(say)),
+        ("es/archivo-de-pieza.md", "refusals", refusals()),
         ("es/ajustes.md", "settings", settings()),
     ):
-        old = (DOCS / name).read_text(encoding="utf-8")
+        old = found.get(name) or (DOCS / name).read_text(encoding="utf-8")
         place = re.search(MARKER.format(name=mark), old, re.DOTALL)
         if place is None:
             raise SystemExit(f"docs/{name}: no place for {mark}")

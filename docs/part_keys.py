@@ -23,6 +23,8 @@ LEFT_OUT = "left out"
 #: What stands behind keys that are only looked for: places, not numbers.
 KINDS = {"center": "{ z, diameter }", "via": "{ z, diameter }", "offset": "{ z, diameter }"}
 CONTEXT = Context("mm", 10.0, False, (Tool(),), USUAL_CUT)
+#: Says words of the table in the language of the page; `str` leaves them in English.
+Say = Callable[[str], str]
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,9 @@ class Refused(Exception):
 class Noting:
     """Has the methods of `tornillo.toml_source.Table` and notes what is asked for."""
 
-    def __init__(self, low: float = 0.0) -> None:
+    def __init__(self, low: float = 0.0, say: Say = str) -> None:
         """Nothing noted yet; places lie behind z = `low`."""
+        self._say = say
         self.title = "noting"
         self.keys: dict[str, Key] = {}
         self.points: list[Noting] = []
@@ -53,7 +56,7 @@ class Noting:
         """Remember a key; one that was looked for first may be left out."""
         shown = None if default is None else str(default)
         if isinstance(default, str):
-            shown = f'"{default}"' if default else "none"
+            shown = f'"{default}"' if default else self._say("none")
         elif isinstance(default, float):
             shown = f"{default:g}"
         if name == "finish_feed":
@@ -65,33 +68,34 @@ class Noting:
     def has(self, name: str) -> bool:
         """It might be there; it is not."""
         self._optional.add(name)
-        self.keys.setdefault(name, Key(name, KINDS.get(name, "number"), LEFT_OUT))
+        self.keys.setdefault(name, Key(name, KINDS.get(name) or self._say("number"), LEFT_OUT))
         return False
 
     def text(self, name: str, choices: tuple[str, ...] = (), default: str | None = None) -> str:
         """A text."""
-        self._note(name, " or ".join(f'"{choice}"' for choice in choices) or "text", default)
+        self._note(name, _choices(choices, self._say) or self._say("text"), default)
         return default or (choices[0] if choices else "a")
 
     def number(self, name: str, default: float | None = None) -> float:
         """A number; each z is smaller than the one before."""
-        self._note(name, "number", default)
+        self._note(name, self._say("number"), default)
         self._low -= 1.0
         return self._low if name == "z" else 5.0
 
     def positive(self, name: str, default: float | None = None) -> float:
         """A number above 0."""
-        self._note(name, "number above 0", default)
+        self._note(name, self._say("number above 0"), default)
         return 5.0
 
     def within(self, name: str, low: float, high: float, default: float) -> float:
         """A number in a range."""
-        self._note(name, f"{low:g} to {high:g}", default)
+        kind = self._say("{} to {}").format(f"{low:g}", f"{high:g}")
+        self._note(name, kind, default)
         return default
 
     def whole(self, name: str, low: int, high: int, default: int) -> int:
         """A whole number in a range."""
-        self._note(name, f"whole number, {low} to {high}", default)
+        self._note(name, self._say("whole number, {} to {}").format(low, high), default)
         return default
 
     def point(self, name: str) -> Point:
@@ -102,12 +106,12 @@ class Noting:
 
     def pair(self, name: str) -> tuple[float, float]:
         """Two numbers."""
-        self._note(name, "[front, back]", None)
+        self._note(name, self._say("[front, back]"), None)
         return 0.0, -1.0
 
     def items(self, name: str, least: int) -> "list[Noting]":
         """A list of places."""
-        self._note(name, f"list of {least} points or more", None)
+        self._note(name, self._say("list of {} points or more").format(least), None)
         return self.points or [Noting(), Noting(-10.0)]
 
     def refuse(self, _name: str, message: str, _remedy: str) -> None:
@@ -118,17 +122,22 @@ class Noting:
         """Nothing is left over."""
 
 
-def asked(read: Callable[[Any], object]) -> list[Key]:
+def _choices(choices: tuple[str, ...], say: Say) -> str:
+    """Texts of which one may stand there."""
+    return f" {say('or')} ".join(f'"{choice}"' for choice in choices)
+
+
+def asked(read: Callable[[Any], object], say: Say = str) -> list[Key]:
     """The keys that `read` asks a table for."""
-    table = Noting()
+    table = Noting(say=say)
     with suppress(Refused):
         read(table)
     return list(table.keys.values())
 
 
-def _point_keys() -> list[Key]:
+def _point_keys(say: Say) -> list[Key]:
     """What a point of a profile may have: asked of the one in the middle."""
-    first, middle, last = Noting(), Noting(-10.0), Noting(-20.0)
+    first, middle, last = Noting(), Noting(-10.0, say), Noting(-20.0)
     profile = Noting()
     profile.points = [first, middle, last]
     with suppress(Refused):
@@ -136,27 +145,26 @@ def _point_keys() -> list[Key]:
     return list(middle.keys.values())
 
 
-def sections() -> dict[str, list[Key]]:
+def sections(say: Say = str) -> dict[str, list[Key]]:
     """The keys of every table of a part file, by its head."""
     found = {
-        "`[part]`": asked(part._read_title),
-        "`[stock]`": asked(part._read_stock),
-        "`[cut]`": asked(read_cut),
-        "`[[tool]]`": asked(lambda table: tools._read_tool(table, 0)),
+        "`[part]`": asked(part._read_title, say),
+        "`[stock]`": asked(part._read_stock, say),
+        "`[cut]`": asked(read_cut, say),
+        "`[[tool]]`": asked(lambda table: tools._read_tool(table, 0), say),
     }
-    choices = " or ".join(f'"{choice}"' for choice in ROUGHING)
-    found["every `[[operation]]` that cuts"] = [
-        Key("tool", "name of a tool", "the first"),
+    found[say("every `[[operation]]` that cuts")] = [
+        Key("tool", say("name of a tool"), say("the first")),
         *(
-            Key(key.name, key.kind, "as in `[cut]`")
-            for key in asked(lambda table: read_overrides(table, USUAL_CUT))
+            Key(key.name, key.kind, say("as in `[cut]`"))
+            for key in asked(lambda table: read_overrides(table, USUAL_CUT), say)
         ),
-        Key("roughing", choices, f'"{ROUGHING[0]}"'),
+        Key("roughing", _choices(ROUGHING, say), f'"{ROUGHING[0]}"'),
     ]
     for kind, read in READERS.items():
-        keys = asked(partial(_read, read))
+        keys = asked(partial(_read, read), say)
         found[f'`[[operation]]` `type = "{kind}"`'] = keys
-    found["a point of a profile"] = _point_keys()
+    found[say("a point of a profile")] = _point_keys(say)
     return found
 
 
@@ -165,15 +173,16 @@ def _read(read: Callable[[Any, Context], object], table: Any) -> object:
     return read(table, CONTEXT)
 
 
-def table_text() -> str:
+def table_text(say: Say = str) -> str:
     """All keys as a Markdown table."""
-    rows = ["| table | keys that are needed | keys that may be left out |", "|---|---|---|"]
-    for head, keys in sections().items():
+    heads = ("table", "keys that are needed", "keys that may be left out")
+    rows = ["| " + " | ".join(say(head) for head in heads) + " |", "|---|---|---|"]
+    for head, keys in sections(say).items():
         needed = ", ".join(f"`{key.name}` ({key.kind})" for key in keys if key.default is None)
         others = ", ".join(
             f"`{key.name}` ({key.kind})"
             if key.default == LEFT_OUT
-            else f"`{key.name}` ({key.kind}; else {key.default})"
+            else f"`{key.name}` ({key.kind}; {say('else')} {key.default})"
             for key in keys
             if key.default is not None
         )

@@ -6,7 +6,7 @@
     python3 firmware/panel/generate_menus.py --check   exit 1 when one is stale
 
 Written are `menus.h` and `texts.inc` for the firmware and the tables between the markers of
-`docs/panel.md`. Only the standard library is needed.
+`docs/panel.md` and `docs/es/panel.md`. Only the standard library is needed.
 """
 
 from __future__ import annotations
@@ -15,11 +15,12 @@ import sys
 from pathlib import Path
 
 from menu_model import HERE, LANGUAGES, Panel, load
-from menu_pages import fill
+from menu_pages import WORDS, fill
 from text_code import END, TextCode
 
 ROOT = HERE.parents[1]
-PAGE = ROOT / "docs" / "panel.md"
+#: The pages of the panel, in the order of the languages.
+PAGES = (ROOT / "docs" / "panel.md", ROOT / "docs" / "es" / "panel.md")
 NOTICE = "Generated from menus.toml by generate_menus.py: do not edit."
 LAST = 0x80
 #: Of the first letter of ours, both its code and its place in the display's memory.
@@ -123,8 +124,9 @@ def derived() -> dict[Path, str]:
     """Path and wanted contents of every derived file."""
     panel = load()
     found = {HERE / "menus.h": header(panel), HERE / "texts.inc": assembly(panel)}
-    if PAGE.exists():
-        found[PAGE] = fill(panel, PAGE.read_text(encoding="utf-8"))
+    for page, words in zip(PAGES, WORDS, strict=True):
+        if page.exists():
+            found[page] = fill(panel, page.read_text(encoding="utf-8"), words)
     return found
 
 

@@ -37,7 +37,7 @@ class Panel:
     """Menus and texts of the panel; `raw` is protocol.toml."""
 
     raw: dict[str, Any]
-    kinds: dict[str, str]
+    kinds: dict[str, Text]
     menus: dict[str, list[Entry]]
     texts: dict[str, Text]
     states: dict[str, Text]
@@ -105,7 +105,7 @@ def load(menus: Path = MENUS, protocol: Path = PROTOCOL) -> Panel:
     names = [name for name in data if name not in NO_MENU]
     panel = Panel(
         raw,
-        data["kind"],
+        {name: tuple(text) for name, text in data["kind"].items()},
         {name: _menu(data[name]) for name in names},
         {name: tuple(text) for name, text in data["text"].items()},
         {name: tuple(text) for name, text in data["state"].items()},
@@ -125,6 +125,9 @@ def _menu(rows: list[dict[str, Any]]) -> list[Entry]:
 
 
 def _judge(panel: Panel) -> None:
+    for kind, said in panel.kinds.items():
+        if len(said) != len(LANGUAGES):
+            raise ValueError(f"kind {kind}: not one text for each of {LANGUAGES}")
     for menu, entries in panel.menus.items():
         for entry in entries:
             _judge_entry(panel, menu, entry)

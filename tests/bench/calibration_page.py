@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures of docs/calibration.md: what switch travel does to a part, and readings of paper S2.
 
+docs/es/calibracion.md gets the same figures with Spanish words.
+
 python tests/bench/calibration_page.py      write them, in two minutes; make bench does, too
 """
 
@@ -13,13 +15,16 @@ from pathlib import Path
 
 from simulated.processes import branch
 from simulated.switch_travel import SWITCH_TRAVEL, Size, Zero, cut_reference
+from spanish import translated
 from tornillo.calibration import Known, Programme, from_ways
 from tornillo.calibration_report import report
+from tornillo.language import use
 from tornillo.protocol import Axis
 from tornillo.readings import read_ways
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = ROOT / "docs" / "calibration.md"
+SPANISH_PAGE = ROOT / "docs" / "es" / "calibracion.md"
 S2 = ROOT / "host-cli" / "examples" / "s2-marks.txt"
 BRANCH_S = 900.0
 MM_PER_INCH = 25.4
@@ -100,10 +105,13 @@ def switch_travel_table(cut: Cut) -> str:
     return "\n".join(lines) + "\n"
 
 
-def s2_report() -> str:
+def s2_report(language: str = "en") -> str:
     """What `tornillo calibrate marks` prints for the readings of paper S2."""
     found = from_ways(read_ways(S2, "um"), Programme(1050, 1050), Known(Axis.Z, 7112, 0, 0))
-    return "\n".join(["```", *report(found), "```"]) + "\n"
+    use(language)
+    lines = report(found)
+    use("en")
+    return "\n".join(["```", *lines, "```"]) + "\n"
 
 
 def fill(page: str, tables: dict[str, str]) -> str:
@@ -115,10 +123,13 @@ def fill(page: str, tables: dict[str, str]) -> str:
 
 
 def calibration_figures() -> dict[str, float]:
-    """Cut, write the page; the error of the cylinders without and with correction, mm."""
+    """Cut, write the pages; the error of the cylinders without and with correction, mm."""
     cut = cut_all()
-    tables = {"switch travel": switch_travel_table(cut), "s2": s2_report()}
-    PAGE.write_text(fill(PAGE.read_text(encoding="utf-8"), tables), encoding="utf-8")
+    table = switch_travel_table(cut)
+    english = {"switch travel": table, "s2": s2_report()}
+    spanish = {"switch travel": translated(table), "s2": s2_report("es")}
+    for page, tables in ((PAGE, english), (SPANISH_PAGE, spanish)):
+        page.write_text(fill(page.read_text(encoding="utf-8"), tables), encoding="utf-8")
     return {
         "switch_travel_left_in_mm": round(turned_inwards(cut[0, Zero.OUTWARDS]), 4),
         "switch_travel_set_mm": round(turned_inwards(cut[SWITCH_TRAVEL, Zero.OUTWARDS]), 4),

@@ -67,7 +67,10 @@ def test_an_entry_is_added_in_one_place(tmp_path: Path) -> None:
     assert after.entries()[first].text == ("Home rate", "Vel. referencia")
     assert len(after.entries()) == len(before.entries()) + 1
     assert "X(KIND_SETTING, SETTING_HOME_RATE)" in generate_menus.header(after)
-    assert "Vel. referencia" in menu_pages.fill(after, "<!-- panel: menus -->\n<!-- end -->")
+    page = "<!-- panel: menus -->\n<!-- end -->"
+    assert "changes the setting `home_rate`" in menu_pages.fill(after, page, menu_pages.WORDS[0])
+    spanish = menu_pages.fill(after, page, menu_pages.WORDS[1])
+    assert "| Home rate | Vel. referencia | cambia el ajuste `home_rate` |" in spanish
 
 
 @pytest.mark.parametrize(
@@ -78,6 +81,7 @@ def test_an_entry_is_added_in_one_place(tmp_path: Path) -> None:
         ('"Home", "Referencia"', '"home", "Referencia"', "capital"),
         ('"Home", "Referencia"', '"Home"', "not one text"),
         ('does = "home"', 'does = "homing"', "no such kind"),
+        (', "cambia el idioma"', "", "kind language: not one text"),
         ('menu = "jog"', 'menu = "jogs"', "no submenu"),
         ('setting = "idle_ms"', 'setting = "idle"', "no such setting"),
     ],

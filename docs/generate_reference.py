@@ -28,6 +28,20 @@ def pins(say: Callable[[str], str] = str) -> str:
     return "\n".join(rows) + "\n"
 
 
+def warnings() -> str:
+    """All warnings in Spanish."""
+    from tornillo.language import use
+    from tornillo.protocol_texts import WARNING_TEXTS
+
+    say = use("es").gettext
+    rows = ["| bit | nombre | causa | qué hacer |", "|---|---|---|---|"]
+    for flag, text in WARNING_TEXTS.items():
+        cause, remedy = say(text.cause), say(text.remedy)
+        rows.append(f"| 0x{flag.value:02X} | `{flag.name}` | {cause} | {remedy} |")
+    use("en")
+    return "\n".join(rows) + "\n"
+
+
 def refusals() -> str:
     """Why the chip refuses parts, in Spanish."""
     from tornillo.language import use
@@ -84,6 +98,7 @@ def pages() -> dict[str, str]:
         ("wiring.md", "pins", pins()),
         ("part-file.md", "keys", table_text()),
         ("es/alarmas.md", "alarms", alarms()),
+        ("es/alarmas.md", "warnings", warnings()),
         ("es/cableado.md", "pins", pins(say)),
         ("es/archivo-de-pieza.md", "keys", table_text(say)),
         ("es/archivo-de-pieza.md", "refusals", refusals()),

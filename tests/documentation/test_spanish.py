@@ -31,11 +31,18 @@ PAGES = {
     "flashing": "actualizar",
 }
 #: Pages that are translated sentence by sentence; the others are shorter in Spanish.
-WHOLE = ["panel", "part-file", "dxf", "wiring", "settings", "calibration"]
+WHOLE = [
+    *("panel", "part-file", "dxf", "wiring", "settings", "calibration"),
+    *("alarms", "safety", "flashing"),
+]
 TABLE = re.compile(r"<!-- (?:generated|table|panel): \w+ -->.*?<!-- end -->", re.DOTALL)
 #: What stands in code and has words for people in it all the same.
 OWN = {
     "--axis PLACE": "--axis LUGAR",
+    "--port NAME": "--port NOMBRE",
+    "last start": "último arranque",
+    "tornillo draw part.toml -o part.svg": "tornillo draw pieza.toml -o pieza.svg",
+    "tornillo flash FILE.hex --check": "tornillo flash ARCHIVO.hex --check",
     "--front PLACE": "--front LUGAR",
     "tornillo check FILE": "tornillo check ARCHIVO",
     "tornillo download PART -o FILE": "tornillo download PIEZA -o ARCHIVO",

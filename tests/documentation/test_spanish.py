@@ -72,9 +72,9 @@ def names(page: str) -> set[str]:
 
 
 def shape(page: str) -> list[str]:
-    """Headings, tables and rows of a page, as one sign each."""
+    """Headings, rows of tables and pictures of a page, as one sign each."""
     lines = re.sub(r"^```.*?^```$", "", text(page), flags=re.MULTILINE | re.DOTALL).splitlines()
-    heads = [re.match(r"#+ |\|", line) for line in lines]
+    heads = [re.match(r"#+ |\||!\[", line) for line in lines]
     return [head[0] for head in heads if head]
 
 

@@ -95,8 +95,8 @@ attached:
 no_reset:
         btfss   UIR, STALLIF, A
         bra     no_stall
+        bcf     UIR, STALLIF, A         ; first: another stall raises it again
         bcf     UEP0, EPSTALL, A
-        bcf     UIR, STALLIF, A
 no_stall:
         btfsc   UIR, TRNIF, A
         call    transaction

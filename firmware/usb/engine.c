@@ -119,11 +119,12 @@ void usb_service(void)
         suspend();
     }
     if (flags & UIR_STALLIF) {
-        /* The stall itself stays in the buffer descriptor. */
+        /* The stall itself stays in the buffer descriptor. The flag goes first:
+         * another stall in between raises it again. */
+        UIR &= (uint8_t)~UIR_STALLIF;
         UEP0 &= (uint8_t)~UEP_EPSTALL;
         UEP1 &= (uint8_t)~UEP_EPSTALL;
         UEP2 &= (uint8_t)~UEP_EPSTALL;
-        UIR &= (uint8_t)~UIR_STALLIF;
     }
     if (flags & UIR_TRNIF) {
         /* The oldest transaction of the FIFO; its descriptor is ours again.

@@ -8,7 +8,7 @@ from functools import partial
 
 import pytest
 from simulated import little_pin
-from simulated.bench import PINS, Bench
+from simulated.bench import PINS, START_S, Bench
 from simulated.processes import branch, on_a_new_chip
 from tornillo.image import Record
 from tornillo.protocol import Alarm, ErrorCode, State
@@ -116,7 +116,7 @@ def test_a_part_cut_off_anywhere_is_resumed_from_the_pass_completed_last_and_com
 def test_the_pass_completed_last_is_cut_once_more_and_those_before_are_not() -> None:
     bench = cutting_lathe()
     bench.wait(lambda: place(bench) == (2, 4), 20.0)
-    bench.run(0.05)
+    bench.run(0.1)
     bench.power_cycle()
     assert completed(bench) == (2, 3)
     bench.home()
@@ -140,7 +140,7 @@ def test_progress_is_known_after_every_kind_of_reset(kind: Reset) -> None:
     bench.run(0.1)
     bench.unplug()
     bench.chip.reset(kind)
-    bench.run(0.05)
+    bench.run(START_S)
     assert completed(bench) == (2, 1)
 
 
@@ -186,7 +186,7 @@ def test_a_long_press_on_run_resumes_the_part_and_a_short_one_begins_it_anew(
     bench.wait(lambda: place(bench) == (2, 3), 20.0)
     bench.run(0.1)
     bench.power_cycle()
-    bench.run(0.05)
+    bench.run(START_S)
     bench.press("run")
     bench.wait(lambda: bench.homed, 60.0)
     hold_run_down(bench, seconds)

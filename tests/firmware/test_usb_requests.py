@@ -19,6 +19,7 @@ SET_LINE_CODING, GET_LINE_CODING, SET_CONTROL_LINE_STATE, SEND_BREAK = 0x20, 0x2
 HALT = 0
 CONFIGURATION_DESCRIPTOR = 0x0200
 UCON, UADDR, SUSPND = 0xF6D, 0xF6E, 0x02
+UEP2, EPSTALL = 0xF72, 0x01
 
 
 def setup_packet(request_type: int, request: int, value: int, length: int) -> bytes:
@@ -158,6 +159,19 @@ def test_the_data_toggles_start_again_at_data0(how: str) -> None:
     bench.toggles[Token.OUT] = 0
     bench.packet(Token.OUT, encode(Frame(1, Command.STATUS, b"")))
     assert decode(bench.packet(Token.IN).data[:-1]).seq == 1
+
+
+@on_a_new_chip
+def test_no_stall_gets_lost_however_soon_it_follows_another() -> None:
+    bench = UsbBench().enumerate()
+    bench.host.control(0x02, SET_FEATURE, HALT, 0x82)
+    for gap in range(0, 240):
+        assert bench.host.transaction(Token.IN, 2).handshake == Handshake.STALL
+        bench.chip.run_to(bench.chip.cycle + gap)
+        assert bench.host.transaction(Token.IN, 2).handshake == Handshake.STALL
+        bench.host.wait(0.0003)
+        assert not bench.chip.peek(UEP2) & EPSTALL, f"{gap} cycles later"
+    bench.host.control(0x02, CLEAR_FEATURE, HALT, 0x82)
 
 
 @on_a_new_chip

@@ -15,6 +15,7 @@ from virtual_lathe.engine_hand import (
     GET_DEVICE,
     PKTDIS,
     SET_ADDRESS_7,
+    STALLIF,
     SUSPND,
     TRNIF,
     UADDR,
@@ -147,6 +148,7 @@ def set_another_address(hand: Hand) -> None:
 def leave_the_stall_set(hand: Hand) -> None:
     hand.arm(2, True, 0x440, 0, BSTALL)
     hand.host.transaction(Token.IN, 2)
+    hand.chip.write(UIR, hand.chip.peek(UIR) & ~STALLIF)
     hand.chip.write(UCON, hand.chip.peek(UCON) & ~USBEN)
     hand.chip.write(UEP0 + 2, hand.chip.peek(UEP0 + 2))
     hand.chip.write(IN_2, 0)
@@ -241,6 +243,19 @@ def _allowed(firmware: str) -> list[str]:
 
 def test_what_the_data_sheet_allows_is_no_mistake(program: Program) -> None:
     assert in_new_process(_allowed, program("spin")) == []
+
+
+def _stall_not_yet_told(firmware: str) -> list[str]:
+    hand = Hand(firmware)
+    hand.arm(2, True, 0x440, 0, BSTALL)
+    hand.arm(2, False, 0x480, 8, DTSEN)
+    hand.host.transaction(Token.IN, 2)
+    hand.host.transaction(Token.OUT, 2, 0, bytes(8))
+    return hand.host.mistakes
+
+
+def test_a_stall_that_the_firmware_has_not_been_told_of_is_no_mistake(program: Program) -> None:
+    assert in_new_process(_stall_not_yet_told, program("spin")) == []
 
 
 def _activity(firmware: str) -> list[bool]:

@@ -33,6 +33,7 @@ Handshake UsbEngine::begin(Packet &packet)
     if (d.stat & BSTALL) {
         reg(UEP0 + n) |= EPSTALL;
         raise(STALLIF);
+        last_stall_ = chip().now();
         return Handshake::Stall;
     }
     check_stall_handled(n);

@@ -98,6 +98,7 @@ private:
     unsigned highest_ = 0;     // the highest endpoint that is on
     uint64_t last_pop_ = 0;    // cycle of the last TRNIF cleared
     uint64_t last_setup_ = 0;
+    uint64_t last_stall_ = 0;
     uint64_t idle_end_ = 0;   // cycle of the last activity after idleness
     uint64_t clock_back_ = 0; // cycle from which ACTVIF can be cleared
     unsigned wanted_address_ = NO_ADDRESS;  // of the last SET_ADDRESS

@@ -57,7 +57,10 @@ void UsbEngine::check_refused()
 
 void UsbEngine::check_stall_handled(unsigned endpoint)
 {
-    if (reg(UEP0 + endpoint) & EPSTALL)
+    // While STALLIF is up the firmware has not been told for long.
+    bool pending =
+        reg(UIR) & STALLIF && chip().now() <= last_stall_ + PATIENCE_CYCLES;
+    if (reg(UEP0 + endpoint) & EPSTALL && !pending)
         mistake(
             text("endpoint %u: EPSTALL is still set after the halt", endpoint));
 }

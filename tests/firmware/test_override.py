@@ -92,7 +92,9 @@ def test_the_ramp_to_the_new_speed_is_that_of_the_acceleration() -> None:
     bench.run(0.1)
     times = [cycle for cycle, _ in bench.chip.pin_changes()]
     speeds = [CYCLES_PER_SECOND / (after - time) for time, after in pairwise(times)]
-    assert speeds == sorted(speeds)
+    # Never slower again, but for the cycle by which a read of flash delays an interrupt.
+    intervals = [after - time for time, after in pairwise(times)]
+    assert all(later <= earlier + 2 for earlier, later in pairwise(intervals))
     for (slow, fast), (time, after) in zip(pairwise(speeds), pairwise(times), strict=False):
         # 8,000 step/s^2 in steps of about a millisecond: one more may fall into an interval.
         assert fast - slow <= 8.0 * ((after - time) / 12000 + 1) + 1
